@@ -9,5 +9,5 @@ class ChauffeurSuite extends munit.FunSuite:
   test("the SIMD kernel simulates the C yardstick's worlds: equal witness for 64 blocks"):
     assertEqualsDouble(ChauffeurKernel().run(0, blocks) / worlds, 17.219968, 0.003)
 
-  test("the scalar form simulates them, too"):
+  test("the scalar form simulates them as well"):
     assertEqualsDouble(ChauffeurScalar.run(0, blocks) / worlds, 17.219968, 0.01)

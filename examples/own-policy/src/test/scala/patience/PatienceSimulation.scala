@@ -35,7 +35,7 @@ class PatienceSimulation extends munit.FunSuite:
     assertEqualsDouble(northMps(Span.Zero, 0), 4, 1e-9)
     assertEqualsDouble(northMps(Span.ofMillis(200), 0.2), 2, 1e-9)
 
-  test("in flight it keeps the distance asked for"):
+  test("in flight it keeps the requested distance"):
     val result = VirtualFlights
       .result(Chase(), LoopKind.Predictive, LatencyProfile.vpn, seed = 1)
       .fold(fail(_), identity)

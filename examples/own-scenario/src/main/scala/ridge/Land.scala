@@ -9,6 +9,6 @@ final case class Land(crestNorthM: Double, crestM: Double, widthM: Double):
     val off = (northM - crestNorthM) / widthM
     crestM * StrictMath.exp(-off * off / 2)
 
-  /** The least height of a line between two positions above the ground, m. */
+  /** The minimum height above the ground of a line between two positions, m. */
   def clearanceM(from: Vector3, to: Vector3): Double =
     (0 to 20).map(_ / 20.0).map(share => from + (to - from) * share).map(at => -at.z - heightM(at.x)).min

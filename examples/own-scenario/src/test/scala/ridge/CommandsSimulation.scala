@@ -62,7 +62,7 @@ class CommandsSimulation extends munit.FunSuite:
     assert(clue(Files.readString(out.resolve("map.csv"))).linesIterator.size > 2)
 
   folder.test(
-    "search chooses settings with SIMD in space, though the scenario says when it is over"
+    "search chooses settings with SIMD in space, even if the scenario defines its own end"
   ): out =>
     val searched = run(
       ("search --objective lowest-view --vary cruise-mps=3..6 " +

@@ -11,7 +11,7 @@ class RidgeSimulation extends munit.FunSuite:
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
     test(
-      s"${loop.label}: both come over the ridge over a slow link, never " +
+      s"${loop.label}: both vehicles cross the ridge over a slow link, never " +
         "out of view, no limit is broken, and the flight ends then"
     ):
       val result = fly(OverTheRidge(), loop)

@@ -69,7 +69,7 @@ object Program extends SkeinApp(ScenarioKind(Rovers())):
 
 /** Runs drives, live and in virtual time. */
 object Chase:
-  /** The prediction model that equals the simulator's. */
+  /** The prediction model that equals the simulator's model. */
   val rover: PredictionModel = PredictionModel.Own(RoverPlant.structure, Vector(3, 1.5, 0.4, 0))
 
   /** Settings for planning: one search suffices for one robot. */

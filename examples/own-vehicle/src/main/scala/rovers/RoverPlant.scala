@@ -42,7 +42,7 @@ final case class RoverPlant(
     state.speedMps * StrictMath.sin(state.headingRad)
   )
 
-  /** Corrects the state by a reading; at rest, its velocity does not determine the heading. */
+  /** Corrects the state with a reading; at rest, its velocity does not determine the heading. */
   def corrected(state: Driving, seen: PlaneReading): Driving =
     val speed   = StrictMath.hypot(seen.northMps, seen.eastMps)
     val heading = if speed > 0.01 then StrictMath.atan2(seen.eastMps, seen.northMps) else state.headingRad

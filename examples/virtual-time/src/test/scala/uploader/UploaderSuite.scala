@@ -19,7 +19,7 @@ class UploaderSuite extends munit.FunSuite:
   test("the same seed gives the same two hours, to the nanosecond"):
     assertEquals(TwoHours.of(seed = 5).took.toNanos, TwoHours.of(seed = 5).took.toNanos)
 
-/** Ten samples a second; the server is unavailable from the 10th to the 70th minute.
+/** Ten samples per second; the server is unavailable from the 10th to the 70th minute.
   *
   * @param received by the server
   * @param inVain failed requests to it

@@ -46,7 +46,9 @@ final case class BenchmarkRow(
 
   val truth: Option[Double] = Option.when(paused.count > 0)(paused.mean)
 
-  /** Deviation of the flights' mean measure from that of the paused flights, as a share of its size. */
+  /** Deviation of the flights' mean measure from the paused flights' mean, as a fraction of the latter's
+    * size.
+    */
   val meanOff: Option[Double] =
     truth.filter(_ != 0 && flown.count > 0).map(truth => (flown.mean - truth) / truth.abs)
 

@@ -37,7 +37,8 @@ object BenchmarkSet:
   /** A loop, with the model by which it predicts.
     *
     * @param isInPacket whether each command carries the actions foreseen after it
-    * @param policy the policy that replaces the scenario's, in the text form of `--policy` of `./skein fly`
+    * @param policy the policy that replaces the scenario's own policy, in the text form of `--policy` of
+    *   `./skein fly`
     */
   final case class Entry(
       name: String,

@@ -2,7 +2,7 @@ package skein.cli
 
 import mainargs.TokensReader
 
-/** Another program's command: the words behind `--`, in any form. */
+/** Another program's command: the words after `--`, in any form. */
 private[cli] final case class Behind(words: Vector[String])
 
 private[cli] object Behind:

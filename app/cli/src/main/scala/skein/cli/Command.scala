@@ -66,7 +66,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** Defaults by option name, for options whose own description does not state one. */
   protected def defaults: Map[String, String] = Map.empty
 
-  /** Names of options that it shares with another command and refuses; help and completion leave them out. */
+  /** Names of options that it shares with another command but refuses; help and completion omit them. */
   protected def refusedAlways: Set[String] = Set.empty
 
   /** All values of an option, by option name, if the set is known. */
@@ -110,7 +110,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
     */
   protected def check(@unused options: A): Either[String, Unit] = Right(())
 
-  /** Parses the words before `--`; those behind it are another program's. */
+  /** Parses the words before `--`; the words after it belong to another program. */
   private def parsed(words: Seq[String]): Either[String, A] =
     val (arguments, behind) = words.span(_ != "--")
     val mistake = arguments.filterNot(ScenarioText.isText).flatMap(Complaint.ofWord).headOption.orElse(

@@ -39,7 +39,7 @@ private[cli] object Complaint:
         word => java.util.regex.Matcher.quoteReplacement(cut(word.matched, MostOfAWord))
       )
 
-  /** Keeps beginning and end of a text, and states how much is left out. */
+  /** Keeps the start and the end of a text, and states how much is omitted. */
   private def cut(text: String, most: Int): String =
     if text.length <= most then text
     else

@@ -39,7 +39,7 @@ private[cli] object Completion:
        |}
        |complete -o filenames -F _$program $program""".stripMargin
 
-  /** A script for zsh, which completes like bash's and shows a description of each option. */
+  /** A script for zsh, which completes like the script for bash and shows a description of each option. */
   def zsh(program: String, commands: Seq[Command]): String =
     def quoted(text: String)    = text.replace("'", "'\\''")
     def bracketed(text: String) = quoted(text.replace("[", "\\[").replace("]", "\\]"))

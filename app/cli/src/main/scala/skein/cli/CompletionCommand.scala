@@ -5,7 +5,7 @@ import mainargs.{Leftover, ParserForClass, arg}
 /** Command-line options of `./skein completion`, with their help texts. */
 final case class CompletionOptions(@arg(doc = "bash or zsh") shell: Leftover[String])
 
-/** @param commands all of the program, including this one */
+/** @param commands all commands of the program, including this one */
 final class CompletionCommand(commands: => Seq[Command])
     extends OptionsCommand[CompletionOptions](
       "completion",

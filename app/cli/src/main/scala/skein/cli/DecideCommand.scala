@@ -132,7 +132,9 @@ final class DecideCommand(using scenarios: Scenarios)
       deciders <- FlightDeciders.of(plan, FlightAssembler.threads)
     yield deciders
 
-  /** Makes decisions before the first flight, so that its first ones do not wait for the JIT compiler. */
+  /** Makes decisions before the first flight, so that the flight's first decisions do not wait for the JIT
+    * compiler.
+    */
   private def warmUp(plan: RecordedPlan): Unit =
     val alike = plan.settings.copy(
       links = List(LatencyProfile.direct),

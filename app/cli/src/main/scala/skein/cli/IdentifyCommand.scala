@@ -171,7 +171,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
     s"${Path.of(file).getFileName}: ${flight.id}, seed ${flight.seed}, ${flight.clock} clock, simulator ${flight.simulator.label}"
 
   /** Notes which flights were virtual: these use only the built-in simulator and should not be mixed with
-    * fits to another one.
+    * fits to another.
     */
   private def clocks(recordings: Vector[Recording]): String =
     val byClock = recordings.groupBy(_.flight.clock).toVector.sortBy(_._1)
@@ -188,7 +188,8 @@ final class IdentifyCommand(using scenarios: Scenarios)
       s"use it: ./skein fly --loop predictive --predictor $named${elsewhere(flights)}"
     else s"use it, with this program: fly --loop predictive --predictor $named, search --plant $named"
 
-  /** A line on the altitude of flights by this model, if the vehicles did not fly at the duel's. */
+  /** A line on the altitude of flights with this model, if the vehicles did not fly at the duel's altitude.
+    */
   private def elsewhere(flights: Vector[TimeHistory]): String =
     altitude(flights).filter(_ != PaperDuel.AltitudeM).fold("")(metres =>
       s" --altitude ${(metres * 10).round / 10.0}"

@@ -52,7 +52,7 @@ object LinkFitCommand
       yield RoundTripTrace.of(recording)
     else TextFile.read(file).flatMap(RoundTripTrace.parse(_).left.map(s"$file: " + _)).map(Vector(_))
 
-  /** Round trips, a line each: those measured, or quantiles of them. */
+  /** Round trips, one line each: those measured, or quantiles of them. */
   private def written(file: String, trips: Vector[Double]): String =
     val shown =
       if trips.sizeIs <= MostQuantiles then trips

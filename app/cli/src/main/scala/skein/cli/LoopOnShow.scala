@@ -7,8 +7,8 @@ import skein.view.{Feed, Gauge, LiveShow, Shows}
 
 /** Shows the loop of an observed program to viewers while it runs.
   *
-  * Findings sort every sample so far, so the next ones start after [[LoopOnShow.Rest]] times as long as the
-  * last took.
+  * Computing findings sorts every sample so far, so the next computation starts [[LoopOnShow.Rest]] times the
+  * last one's duration later.
   *
   * @param takeNew commands since the last call
   * @param findings the findings so far, in words

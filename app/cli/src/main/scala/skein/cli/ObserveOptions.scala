@@ -62,7 +62,7 @@ object ObserveOptions:
   private val Seed = 1L
 
   extension (options: ObserveOptions)
-    /** Options of the wire to a simulator, which neither a bag nor topics have. */
+    /** Options of the connection to a simulator, which neither a bag nor topics have. */
     def ofWire: Vector[String] =
       Vector(
         "--listen"    -> options.listen.isDefined,

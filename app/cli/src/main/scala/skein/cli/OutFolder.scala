@@ -33,8 +33,8 @@ private[cli] object OutFolder:
       catch case _: IOException => () // not empty
     done
 
-  /** Creates the folder if necessary and checks that it is writable, so that a command of minutes does not
-    * fail at its end.
+  /** Creates the folder if necessary and checks that it is writable, so that a long command does not fail at
+    * its end.
     *
     * @param option the option that names the folder, for example `--out`
     * @return Left says in a line why it cannot be written

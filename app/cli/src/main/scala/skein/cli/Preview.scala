@@ -10,7 +10,7 @@ import skein.settings.{FlightPlan, FlySettings, OutsidePolicy}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** First results of live flights: simulates their virtual twins before them, as long as this takes little
+/** First results of live flights: simulates their virtual twins beforehand, provided that this takes little
   * time. These twins are not simulated again afterwards.
   */
 private[cli] object Preview:

@@ -32,7 +32,7 @@ private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long 
   def end(): Unit = if isTerminal && width > 0 then out.print("\r" + " " * width + "\r")
 
   private def left(now: Long, done: Long): String =
-    // The first part runs while the just-in-time compiler still works, and is no measure of the rate.
+    // The first part runs while the just-in-time compiler still works, and is not a measure of the rate.
     if done - from < (total / 200).max(1) then ""
     else
       val seconds = (now - startedAt) * 1e-9 * (total - done).max(0) / (done - from)

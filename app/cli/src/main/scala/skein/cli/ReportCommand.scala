@@ -15,7 +15,7 @@ final case class ReportOptions(
     json: Flag
 )
 
-/** `./skein report`: makes tables and figures from recordings alone. */
+/** `./skein report`: makes tables and figures from recordings only. */
 final class ReportCommand(using Scenarios)
     extends OptionsCommand[ReportOptions](
       "report",

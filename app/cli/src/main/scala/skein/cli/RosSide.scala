@@ -20,7 +20,7 @@ private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTo
     do
       Console.out.println(s"ROS 2: $line")
 
-  /** Lines about what has gone wrong since the last call. */
+  /** A line for each fault since the last call. */
   def news(): Seq[String] =
     val commands = served.fold(CommandCounts.Zero)(_.commands)
     val now      = (

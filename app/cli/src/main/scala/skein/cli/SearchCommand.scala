@@ -151,7 +151,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       _ <- asked.setup
     yield asked
 
-  /** Sets smaller defaults for an engine that evaluates only some candidates a second. */
+  /** Sets smaller defaults for an engine that evaluates only some candidates per second. */
   private def inFlights(question: TeamQuestion, options: SearchOptions): TeamQuestion =
     val candidates = options.candidates.getOrElse(40)
     question.copy(

@@ -5,9 +5,9 @@ import skein.report.Section
 /** A command's results on standard output: for people, or with `--json` for scripts. */
 private[cli] final class Shown(asJson: Boolean):
 
-  /** Prints tables; with `--json` only these are data.
+  /** With `--json`, prints the tables as JSON; otherwise prints `text`.
     *
-    * @param text printed for people instead
+    * @param text printed without `--json`
     */
   def tables(sections: Seq[Section], text: => String): Unit =
     Console.out.println(if asJson then Section.json(sections) else text)

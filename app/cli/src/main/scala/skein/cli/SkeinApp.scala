@@ -82,7 +82,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     if !Edge.isInterrupted then
       sys.exit(if status == 0 then written(System.out, FileOutputStream(FileDescriptor.out)) else status)
 
-  /** Flushes the outputs; a reader that has closed its pipe early is no failure. */
+  /** Flushes the outputs; a reader that has closed its pipe early is not a failure. */
   private[skein] final def written(out: PrintStream, again: OutputStream): Int =
     val why = Option.when(out.checkError()):
       try

@@ -35,8 +35,8 @@ private[cli] object SpreadQuestion:
       case None =>
         probe(settings).map(SpreadQuestion(config.root.render(ConfigRenderOptions.concise), _))
 
-  /** Digests of short flights, which differ if another machine's files do. A recording begins with policies,
-    * models and scenes; links affect only vehicles.
+  /** Digests of short flights, which differ if the files of another machine differ. A recording begins with
+    * policies, models and scenes; links affect only vehicles.
     */
   private def probe(settings: FlySettings): Either[String, Vector[String]] =
     val plans = settings.plans

@@ -50,7 +50,7 @@ private[cli] object Terminal:
   private def stream(to: FileDescriptor, charset: Charset) =
     PrintStream(Plain(FileOutputStream(to), charset), true, StandardCharsets.UTF_8)
 
-  /** Accepts UTF-8 and writes the characters that the charset can show, others by replacements. */
+  /** Accepts UTF-8 and writes the characters that the charset can show, and replacements for the others. */
   private[cli] final class Plain(to: OutputStream, charset: Charset) extends OutputStream:
     private val encoder = charset.newEncoder
     private var waiting = Array.emptyByteArray

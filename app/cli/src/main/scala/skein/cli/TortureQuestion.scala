@@ -13,7 +13,7 @@ import upickle.default.ReadWriter
 /** Flights with faults, as workers receive them. A block is a range of seeds.
   *
   * @param scenario the scenario's name; without one, duels
-  * @param scene the scene as recorded; without one, the scenario's
+  * @param scene the scene as recorded; None for the scenario's own scene
   */
 private[cli] final case class TortureQuestion(
     durationNanos: Long,

@@ -36,7 +36,7 @@ final class WorkerCommand(using Scenarios)
       ParserForClass[WorkerOptions]
     ):
 
-  /** Time after which a stopping worker ends, whatever it computes. */
+  /** Time after which a stopping worker ends, even during a computation. */
   private val Grace = 3_000L
 
   private val LongestPatience = Span.ofSeconds(7 * 24 * 3600)

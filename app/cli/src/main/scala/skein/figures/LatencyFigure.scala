@@ -123,7 +123,7 @@ object LatencyFigure:
       ((roundTripsMs.head, 0.0) +: pieces.flatten) :+ (roundTripsMs.last, 0.0)
     case _ => Vector.empty
 
-  /** Density of an emulated link's round trips: half of one sample forth, half of another one back. */
+  /** Density of an emulated link's round trips: half of one sample forth, half of another back. */
   private def densityOfHalves(profile: LatencyDistribution, step: Double): Vector[(Double, Double)] =
     val count  = 400
     val halves = Vector.tabulate(count)(index => profile.quantile((index + 0.5) / count).toMillis / 2)

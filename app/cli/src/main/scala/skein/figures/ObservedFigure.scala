@@ -5,7 +5,7 @@ import skein.observe.ObservedVehicle
 import skein.plot.*
 
 /** The paper's four observations of an outside program: for each vehicle a bar for the mean, and a line up to
-  * the 99th percentile, all on one scale. Ages begin when physics was sampled.
+  * the 99th percentile, all on one scale. Ages count from the sampling of physics.
   */
 object ObservedFigure:
   private val colour   = Colour(0x0072b2)

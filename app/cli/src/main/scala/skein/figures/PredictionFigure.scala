@@ -18,7 +18,7 @@ object PredictionFigure:
       legend(drawn, kinds.filter(kind => drawn.exists(kind.of(_).byAge.nonEmpty)).reverse)
     ))
 
-  /** A kind of predictions: the deciding vehicle's own, or those of the others. */
+  /** A kind of predictions: of the deciding vehicle itself, or of the other vehicles. */
   private final case class Kind(
       name: String,
       colour: Colour,
@@ -89,7 +89,7 @@ object PredictionFigure:
     if isHollow then Mark.Disc(at, 2.6, Some(Stroke(stroke.colour, 1.2)), Some(FlightTheme.halo))
     else Mark.Disc(at, 2.6, None, Some(stroke.colour))
 
-  /** A legend entry that shows the curve's style, or the discs' if there are only discs. */
+  /** A legend entry that shows the style of the curve, or of the discs if there are only discs. */
   private def item(groups: Vector[PredictionGroup], kind: Kind, share: Share): Legend.Item =
     val label   = s"${kind.name}, ${share.name}"
     val isCurve = groups.exists(kind.of(_).stretches.exists(_.sizeIs >= FewestOfCurve))

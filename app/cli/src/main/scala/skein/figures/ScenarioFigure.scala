@@ -43,7 +43,7 @@ object ScenarioFigure:
       )
     )
 
-  /** The outline of a fence, cut to the panel. */
+  /** The outline of a fence, clipped to the panel. */
   private def outline(panel: Panel, fence: Fence): Vector[Mark] =
     val corners = fence match
       case Fence.Circle(north, east, radius) =>
@@ -251,5 +251,5 @@ object ScenarioFigure:
   /** Maximum number of vehicles that a legend lists by name. */
   private val MostNamed = 8
 
-  /** Excess width of the first vehicle's line over the last one's. */
+  /** How much wider the first vehicle's line is than the last vehicle's. */
   private val WidestMore = 3.0

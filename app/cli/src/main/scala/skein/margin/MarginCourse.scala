@@ -2,11 +2,11 @@ package skein.margin
 
 import skein.units.{Instant, Span}
 
-/** How long a run has lasted, and when something passed between program and simulator.
+/** The duration of a run so far, and the times at which messages passed between program and simulator.
   *
-  * @param at the last look
+  * @param at time of the last observation
   * @param passed time from the first message to the last one
-  * @param passedAt the look that saw the last message; at first the start
+  * @param passedAt when the last message was noticed; before the first message, the start
   */
 private[margin] final case class MarginCourse(
     startedAt: Instant,

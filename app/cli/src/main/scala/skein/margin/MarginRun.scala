@@ -24,7 +24,7 @@ object MarginRun:
     /** The program did nothing that could be scored. */
     case OfProgram(reason: String) extends NoResult(reason)
 
-    /** The machine was too busy, or the run could not begin. */
+    /** The machine was too busy, or the run could not start. */
     case OfMachine(reason: String) extends NoResult(reason)
 
   /** The course of a run, observed from outside.

@@ -6,7 +6,7 @@ import skein.units.Decimals.fixed
 final case class PlotAxis(label: String, from: Double, to: Double, ticks: Vector[Double]):
   require(from < to, s"axis '$label' runs from $from to $to")
 
-  /** A value's position on the axis: 0 at its begin, 1 at its end. */
+  /** A value's position on the axis: 0 at its start, 1 at its end. */
   def share(value: Double): Double = (value - from) / (to - from)
 
   /** A tick's label, with as many decimals as the ticks' distance needs. */

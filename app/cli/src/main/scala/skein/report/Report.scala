@@ -53,7 +53,7 @@ object Report:
       others: Vector[String],
       failures: Vector[String]
   ):
-    /** Right if the page is complete; Left lists what is missing, a line each. */
+    /** Right if the page is complete; Left lists what is missing, one line each. */
     def whole: Either[String, Unit] = Expect.that(failures.isEmpty)(failures.mkString("\n"))
 
     /** The page's path and remarks, in lines for the user. */

@@ -7,7 +7,7 @@ import skein.scenario.Scenarios
 /** The sections of a report, in order; empty ones are left out. */
 object ReportSections:
 
-  /** @param figures the report's figures, by [[ReportFigures.of]]; empty for tables alone */
+  /** @param figures the report's figures, by [[ReportFigures.of]]; empty for tables only */
   def of(set: FlightSet, figures: ReportFigures = ReportFigures())(using Scenarios): Vector[Section] =
     val results  = orFailures(ScenarioReport.each(set)((report, flights) => report.results(flights)))
     val pictures = figures.all.filterNot(figure => withTables(figure.name)).map(figure =>

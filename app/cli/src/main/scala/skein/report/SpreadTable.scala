@@ -9,7 +9,7 @@ object SpreadTable:
   /** A row per loop and link, in the order of the flights: over its flights, mean and standard deviation of
     * the mean distance in the last 10 s, and of the standard deviation within a flight's last 10 s, the
     * closest approach, in how many flights it was a capture, and the mean deviation from the [[Truth]]. Where
-    * a loop and link gave no distance, since a vehicle was never read, the flights are counted alone.
+    * a loop and link gave no distance, since a vehicle was never read, the flights are only counted.
     */
   def of(flights: Seq[FlightSummary]): TextTable =
     val truths = Truth.among(flights)

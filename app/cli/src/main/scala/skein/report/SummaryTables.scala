@@ -143,7 +143,7 @@ object SummaryTables:
           )
     )
 
-  /** Remarks on single flights, a line each. */
+  /** Remarks on single flights, one line each. */
   def remarks(set: FlightSet): Vector[String] =
     withoutResult(set) ++ cutShort(set) ++ starved(set) ++ paused(set) ++ imageless(set) ++
       unknown(set) ++ waiting(set)

@@ -3,7 +3,8 @@ package skein.report
 import skein.measure.{DistanceCurve, Distribution, FlightSet, FlightSummary}
 import skein.units.Decimals.fixed
 
-/** Whether the timing of flights is good enough, in one sentence, by the criterion of the AirSim guide.
+/** Whether the timing of flights is good enough, in one sentence, according to the criterion of the AirSim
+  * guide.
   *
   * With a `paused` flight it is measured: a loop may deviate by [[Limit]] from the paused flight, the margin
   * of [[skein.optimise.LatencyBudget]]. Without one it is estimated: a vehicle moves from where it was read
@@ -27,7 +28,7 @@ object TimingVerdict:
   /** The flights of one loop over one link, with the verdict if there is one. */
   private final case class Judged(name: String, link: String, verdict: Option[Verdict])
 
-  /** @param share deviation as a share of the paused flight's value, or of the distance between vehicles
+  /** @param share deviation as a fraction of the paused flight's value, or of the distance between vehicles
     * @param why the meaning of the share, in words
     */
   private final case class Verdict(isMeasured: Boolean, share: Double, why: String):
@@ -103,7 +104,7 @@ object TimingVerdict:
         s"${apartM.fixed(1)} m between vehicles, before a command answers to what was read"
     )
 
-  /** The median distance between the two vehicles with the least median distance, m. */
+  /** The smallest of the pairwise median distances between vehicles, m. */
   private def separationM(flight: FlightSummary): Option[Double] =
     val near  = flight.tracks.take(MostCompared)
     val apart =

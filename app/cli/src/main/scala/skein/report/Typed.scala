@@ -5,7 +5,7 @@ import java.nio.file.Path
 /** Quotes what a person is to type into a shell, which would misread names with spaces or quotation marks. */
 private[skein] object Typed:
 
-  /** A path as one shell word that is no option. */
+  /** A path as one shell word that is not an option. */
   def path(path: Path): String =
     val text = if path.toString.startsWith("-") then s"./$path" else path.toString
     if text.matches("[\\p{L}\\p{N}._/+@%-]+") then text else s"'${text.replace("'", "'\\''")}'"

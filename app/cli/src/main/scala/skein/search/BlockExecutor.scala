@@ -16,11 +16,11 @@ trait BlockExecutor:
   ): Future[Either[String, Option[Vector[ArraySeq[Byte]]]]]
   def cancel(): Unit
 
-  /** Has blocks computed. Blocks the calling thread.
+  /** Gets blocks computed, and blocks the calling thread until then.
     *
-    * @param isCancelled checked several times a second; true ends the computation
+    * @param isCancelled checked several times per second; true ends the computation
     * @param onAnswer called with each answer as it arrives, in any order, on the calling thread
-    * @param onWait called several times a second on the calling thread
+    * @param onWait called several times per second on the calling thread
     */
   final def computed(
       works: Vector[ArraySeq[Byte]],

@@ -6,8 +6,8 @@ import skein.optimise.{Evaluator, RunningStats}
   * this one. Blocks the calling thread.
   *
   * @param atMost maximum number of episodes in a block
-  * @param onWait called several times a second on the waiting thread, with the number of the call's episodes
-  *   over all candidates
+  * @param onWait called several times per second on the waiting thread, with the number of the call's
+  *   episodes over all candidates
   */
 final class ClusterEvaluator(elsewhere: BlockExecutor, judge: Judge, atMost: Int, onWait: Long => Unit)
     extends Evaluator:

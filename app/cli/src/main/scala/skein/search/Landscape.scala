@@ -21,7 +21,7 @@ final case class Landscape(
     cells: Vector[Vector[RunningStats]]
 ):
 
-  /** The median of the cells' standard errors: a bound on how much means differ by chance alone. If episodes
+  /** The median of the cells' standard errors: a bound on how much means differ merely by chance. If episodes
     * share random numbers, they differ less.
     */
   def standardError: Double =

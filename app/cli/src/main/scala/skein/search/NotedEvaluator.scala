@@ -3,7 +3,7 @@ package skein.search
 import skein.lanes.Engine
 import skein.optimise.{Evaluator, RunningStats}
 
-/** Delegates to another evaluator, and records the engine of each candidate: their policies may be of several
+/** Delegates to another evaluator, and records each candidate's engine, since policies may have different
   * forms. One call at a time.
   *
   * @param engine the engine of a candidate

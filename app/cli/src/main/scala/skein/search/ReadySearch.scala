@@ -39,7 +39,7 @@ trait Searched:
 
   /** The vehicles of forward simulation, with their objective.
     *
-    * @param candidate the parameters; the baseline's if `judge` is the baseline
+    * @param candidate the parameters; those of the baseline if `judge` is the baseline
     * @param by the objective of a candidate with default parameters
     */
   def team(candidate: Vector[Double], judge: Judge, by: Objective): (Engagement, Objective)
@@ -55,7 +55,7 @@ trait Searched:
     */
   def effort(together: Engine, alone: Engine, by: Conditions.Resolved): Effort
 
-  /** Name and text of a file with the result that `./skein fly` accepts. */
+  /** Name and contents of a file that holds the result in a form that `./skein fly` accepts. */
   def file(found: Found, of: ReadySearch): (String, String)
 
 /** A search whose question is resolved: processes that resolve equal questions evaluate with identical bits.

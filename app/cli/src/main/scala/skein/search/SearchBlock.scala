@@ -9,8 +9,8 @@ import skein.units.Expect
 /** A part of an evaluator's call, which any process with an equal question answers with identical bits: some
   * candidates on some episodes.
   *
-  * @param isWhole whether the episodes are all of the call, so that statistics suffice; else every episode's
-  *   value is needed
+  * @param isWhole whether the block contains all episodes of the call, so that statistics suffice; else every
+  *   episode's value is needed
   */
 final case class SearchBlock(
     judge: Judge,

@@ -128,7 +128,7 @@ object SearchResult:
       .root
       .render(ConfigRenderOptions.defaults.setOriginComments(false).setJson(false))
 
-  /** The first remarks of a policy file: the result of its policy, and that of the paper's. */
+  /** The first remarks of a policy file: the results of its policy and of the paper's policy. */
   def objective(
       text: String,
       unit: String,

@@ -60,7 +60,7 @@ final case class TeamQuestion(
       _ <- Expect.that(axes.map(_.name).distinct.size == axes.size):
         s"--vary: expected every setting once, got ${vary.map(_.key).mkString(", ")}"
       space = SearchSpace(axes)
-      // A setting's bounds may be invalid only in combination with another's.
+      // A setting's bounds may be invalid only in combination with another setting's bounds.
       corners <-
         Expect.each(
           space.grid(2)

@@ -23,7 +23,7 @@ final case class LearnResult(
 ):
   import setup.{baseline, game, question}
 
-  /** The results as a table, with the baseline's. */
+  /** The results as a table, with the baseline's results. */
   def section: Section =
     def row(policy: String, where: String, tally: RunningStats, unit: String) =
       val interval = Interval.of(tally.mean, tally.halfWidth95)

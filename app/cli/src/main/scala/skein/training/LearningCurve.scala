@@ -8,7 +8,7 @@ import skein.plot.*
 object LearningCurve:
 
   /** @param scores each with its label in the legend and its colour
-    * @param levels values to compare with, by name
+    * @param levels values to compare with, and their names
     */
   def apply(
       title: String,

@@ -99,7 +99,9 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
     assertEqualsDouble(row.violations, 0, 0)
     assertEquals(BenchmarkRow(cell, few.entries.head, flights(0), flights(1), Vector.empty).meanOff, None)
 
-  test("the interval contains the error of the paused loop's mean, and more is more of a negative measure"):
+  test(
+    "the interval contains the error of the paused loop's mean; a rise of a negative measure is positive"
+  ):
     def flights(values: Double*) =
       values.toVector.map(value => BenchmarkFlight(Some(value), violations = 0, None, Vector.empty))
     def row(truths: Vector[BenchmarkFlight], flown: Vector[BenchmarkFlight]) =

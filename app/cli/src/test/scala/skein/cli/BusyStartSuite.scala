@@ -16,7 +16,7 @@ class BusyStartSuite extends munit.FunSuite:
       )
     do assertEquals(config.getDuration(path).toSeconds, seconds.toLong, path)
 
-  test("a start that times out is reported in one line"):
+  test("a start-up that times out is reported in one line"):
     val late = TimeoutException("Future timed out after [600 seconds]")
     val ran  = Ran.of(Main.unexpected("serve", late))
     assertEquals(ran.status, 1)

@@ -27,7 +27,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
   private lazy val parent          = temporaryFolder()
   private def folder(name: String) = parent.resolve(name)
 
-  /** The result of a search in this process alone. */
+  /** The result of a search in this process only. */
   private lazy val alone: Path =
     searched(question ++ Seq("--out", folder("alone").toString))
     folder("alone")
@@ -55,7 +55,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
     isSo
 
   test(
-    "a search that continues after its coordinator and a worker were killed equals one process' to the bit"
+    "a search that survives the loss of its coordinator and a worker equals that of one process, to the bit"
   ):
     val out     = folder("resumed")
     val command =

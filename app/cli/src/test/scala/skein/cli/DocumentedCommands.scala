@@ -338,7 +338,7 @@ object DocumentedCommands:
     .filter(command => kindOf(command) == kind && !runElsewhere.contains(command) && !isOfReaders(command))
 
   /** A command that runs a reader's own program for minutes, in real time; [[MarginCommandLiveSuite]] runs
-    * others.
+    * other programs.
     */
   private def isOfReaders(command: String) = command.startsWith("margin ")
 

@@ -19,7 +19,7 @@ class FlyRosSuite extends munit.FunSuite, TemporaryFolders:
     assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
     assert(said(possible*).contains("--ros: ROS 2 was not found: expected librcl.so in lib of a folder of"))
 
-  test("without chosen loops, all loops fly that do not stop time"):
+  test("if no loop is chosen, every loop that does not stop time is run"):
     assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
     assert(clue(said("--ros", "--link", "none")).contains("ROS 2 was not found"))
 

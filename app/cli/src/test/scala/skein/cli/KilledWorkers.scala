@@ -7,7 +7,7 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Random
 import skein.blocks.Ledger
 
-/** A search with three workers, one of which is killed every 5 s; then an equal search in this process alone:
+/** A search with three workers, one of which is killed every 5 s; then an equal search in this process only:
   * `./sbtw "cli/Test/runMain skein.cli.killWorkers 60000 20 DIR"`. Fails if their files differ, or if a block
   * counts twice.
   *

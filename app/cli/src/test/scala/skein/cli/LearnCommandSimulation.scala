@@ -38,7 +38,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       assert(Files.size(folder.resolve("learning-curve.svg")) > 1000)
 
   test(
-    "a team's pursuers learn one policy, which replaces each one's in flights and forward simulation"
+    "a team's pursuers learn one policy, which replaces the policy of each in flights and forward simulation"
   ):
     val folder = temporaryFolder().resolve("learned")
     val words  = "--scenario surround --set vehicles=4 --objective off-ring --json".split(' ').toSeq
@@ -132,7 +132,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(file.question, question)
     assertEquals(learn(folder, file.state, setup.rounds), whole)
 
-  test("a user who stops learning is shown how to continue, and soon the best policy's result"):
+  test("a user who stops learning is shown how to continue, and soon sees the best policy's result"):
     val question = LearnCommand
       .question(LearnOptionsOf(short.updated(short.indexOf("--fresh") + 1, "150")))
       .fold(fail(_), identity)

@@ -34,7 +34,7 @@ class LoopOnShowSuite extends munit.FunSuite:
     now = now + Span.ofMillis(100)
     assertEquals(shown.json(), None)
 
-  test("findings are sought again after twenty times as long as the last ones took"):
+  test("findings are computed again after twenty times the duration of the last computation"):
     val shown                    = show(findingTakes = Span.ofSeconds(1))
     def after(seconds: Int): Int =
       now = now + Span.ofSeconds(seconds)
@@ -43,7 +43,7 @@ class LoopOnShowSuite extends munit.FunSuite:
       found
     assertEquals(Vector(after(0), after(10), after(9), after(1), after(10)), Vector(1, 1, 1, 2, 2))
 
-  test("findings are sought after the last commands too, and once more at the end"):
+  test("findings are also sought after the last commands, and once more at the end"):
     val shown                                         = show(findingTakes = Span.ofSeconds(1))
     def turn(seconds: Int, isCommanded: Boolean): Int =
       now = now + Span.ofSeconds(seconds)

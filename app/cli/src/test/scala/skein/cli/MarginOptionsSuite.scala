@@ -10,7 +10,7 @@ class MarginOptionsSuite extends munit.FunSuite:
 
   private def mistake(words: String*) = MarginCommand().checked(words).left.toOption
 
-  test("words behind -- are the program's, including options"):
+  test("words after -- belong to the program, even if they look like options"):
     assertEquals(mistake("--scenario", "duel", "--", "sh", "-c", "--judge", "--nothing"), None)
     assertEquals(ObserveCommand.checked(Seq("--", "sh", "-c", "exit 3")), Right(()))
 

@@ -8,7 +8,7 @@ class ObserveProgramLiveSuite extends munit.FunSuite, Waiting:
     Seq("--json", "--listen", "127.0.0.1:0", "--simulator", "127.0.0.1:1", "--") ++ program
   ))
 
-  test("with --json a program's output goes to standard error, so that standard output is JSON alone"):
+  test("with --json a program's output goes to standard error, so that standard output contains only JSON"):
     val ran = run("sh", "-c", "echo hello; exit 3")
     assertEquals(ran.status, 0, ran.said)
     assert(ran.err.linesIterator.contains("hello"), ran.said)

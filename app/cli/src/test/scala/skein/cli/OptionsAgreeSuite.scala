@@ -14,7 +14,7 @@ class OptionsAgreeSuite extends munit.FunSuite:
         assert(option.summary.length > 5, s"${command.name} $flag")
         assert(command.help.contains(flag), s"${command.name} $flag")
 
-  test("--out is a folder in every command, and no other option has its purpose"):
+  test("--out names a folder in every command, and no other option serves that purpose"):
     assert(having("--out").sizeIs > 6)
     for (command, option) <- having("--out") do
       assert(option.summary.startsWith("folder "), s"${command.name}: ${option.summary}")

@@ -33,7 +33,7 @@ class PolicyCommandSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(PolicyFile.read(conf).map(_.text), PolicyFile.read(file).map(_.text))
     assertEquals(PolicyFile.read(conf).map(_.role), PolicyFile.read(file).map(_.role))
 
-  test("a policy that is no network, a missing file, and an unusable folder are reported"):
+  test("a policy that is not a network, a missing file, and an unusable folder are reported"):
     val folder = temporaryFolder()
     for
       (words, expected) <- Seq(

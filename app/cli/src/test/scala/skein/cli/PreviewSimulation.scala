@@ -45,7 +45,7 @@ class PreviewSimulation extends munit.FunSuite:
     assert(lines.exists(_.matches("in virtual time, stream over vpn: last 10 s [0-9.]+ m")), lines)
     assertEquals(lines.size, 2, lines)
 
-  test("no preview begins after the time for them is over"):
+  test("no preview starts after the time for previews has elapsed"):
     var looks        = 0
     val clock: Clock = () =>
       looks += 1

@@ -44,7 +44,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     val ran = Ran.of(command.run(arguments))
     (ran.status, ran.out, ran.err)
 
-  recordings.test("report rebuilds page and tables from the files alone"): folder =>
+  recordings.test("report rebuilds page and tables from the files only"): folder =>
     val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)
     val (status, text, err) = run(ReportCommand(), files :+ "--out" :+ folder.resolve("report").toString*)
     assertEquals((status, err), (0, ""))
@@ -52,7 +52,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assert(Files.exists(folder.resolve("report/report.html")))
 
   recordings.test(
-    "a recording is not exported over itself under any name, and a folder is no recording"
+    "a recording is not exported over itself under any name, and a folder is not a recording"
   ): folder =>
     val file   = folder.resolve("stream-vpn.duckdb")
     val before = Files.size(file)
@@ -182,7 +182,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString)._1, 0)
     assert(Files.exists(folder.resolve("figures/distance.svg")))
 
-  recordings.test("report lists a file that is no recording, and writes nothing"): folder =>
+  recordings.test("report lists a file that is not a recording, and writes nothing"): folder =>
     val text             = Files.writeString(folder.resolve("notes.txt"), "nothing")
     val (status, _, err) = run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString, text.toString)
     assertEquals(status, 1)

@@ -16,7 +16,7 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     assertEquals(done.status, 0, s"${words.mkString(" ")}: ${done.said}")
     done.said
 
-  folder.test("flights of a scenario's file are reported and replayed from the recording alone"): path =>
+  folder.test("flights of a scenario's file are reported and replayed from the recording only"): path =>
     val file = Files.copy(ring, path.resolve("ring.scenario"))
     val told = well(
       ("fly --clock virtual --loop predictive --link vpn --duration 6s --set ring-m=6 --scenario " +

@@ -28,7 +28,7 @@ class ScenarioGaugeSuite extends munit.FunSuite:
   private def fly(gauge: ScenarioGauge, steps: Range): Unit =
     for step <- steps; vehicle <- Seq("A", "B") do gauge.see(reading(step, vehicle))
 
-  test("a scenario's series are sent point by point, each once, with their bound"):
+  test("a scenario's series are sent point by point, each point once, with the series' bound"):
     val told = gauge(Climbing)
     fly(told, 0 to 10)
     val first = ujson.read(told.json().get)("series")(0)

@@ -131,7 +131,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(clue(why).contains(s"the solver at $at does not speak TLS; expected ./skein decide with --tls"))
     finally Await.result(server.close(), 20.seconds): Unit
 
-  test("a flight with certificates checks whether an unknown solver has any, too"):
+  test("a flight with certificates checks whether an unknown solver has certificates, too"):
     // A link whose far side is down.
     val closing = transport(None).listen(loopback).to(Sink.foreach(
       _.flow.join(Flow.fromSinkAndSource(Sink.cancelled, Source.empty)).run(): Unit

@@ -152,7 +152,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
     assertEquals(seen("questions").arr.size, 3)
     assertEquals(seen("told")("state").str, "Stopped: it was stopped from outside")
     assertEquals(seen("told")("ended"), seen("told")("later"))
-    // The page's time is the flight's: it begins with the first reading.
+    // The page shows the flight's time, which begins with the first reading.
     val flown = recorded.ending.get.at.since(recorded.readings.map(_.state.sentAt).min).toSeconds
     assertEqualsDouble(seen("told")("ended")(0).num, flown, 0.3)
     assertEquals(seen("told")("own")(0).str, "distance, m")

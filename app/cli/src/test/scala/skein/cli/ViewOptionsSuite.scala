@@ -14,7 +14,7 @@ class ViewOptionsSuite extends munit.FunSuite:
       Some("--view-origin: expected with --view")
     )
 
-  test("an invalid port, and a site in another form than a browser's, are refused"):
+  test("an invalid port, and a site that is not written as browsers write it, are refused"):
     for port <- Seq(0, 65535) do
       assertEquals(told(view = true, Some(port), "https://app.foxglove.dev", "http://localhost:8080"), None)
     for port <- Seq(-1, 65536) do

@@ -24,8 +24,8 @@ import skein.view.{Feed, LiveShow, Shows, ViewServer}
   * processes for one frame states how many one core could draw. `cli/Test/runMain skein.cli.watchedTeam 20
   * true`.
   *
-  * @param plain whether the browser draws by software alone, else by software that imitates a graphics card,
-  *   which costs more
+  * @param plain whether the browser draws in plain software, else with software that imitates a graphics
+  *   card, which costs more
   */
 @main def watchedTeam(seconds: Int, plain: Boolean): Unit =
   val settings = FlySettings(

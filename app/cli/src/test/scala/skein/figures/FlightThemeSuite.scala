@@ -10,7 +10,7 @@ import skein.scenario.Scenarios
 class FlightThemeSuite extends munit.FunSuite:
   private given Scenarios = PaperReport.scenarios
 
-  test("each loop has its own colour, and unknown loops have another one"):
+  test("each loop has its own colour, and unknown loops have another"):
     val colours =
       LoopKind.values.toVector.map(loop => FlightTheme.of(loop.label)) :+ FlightTheme.of("a loop to come")
     assertEquals(colours.distinct.size, LoopKind.values.length + 1)

@@ -17,7 +17,7 @@ class SparseFiguresSuite extends munit.FunSuite:
     val flights = Report.of(Seq(SyntheticFlight("stream", "vpn", seed = 2, seconds)))
     texts(DistanceFigure(flights).get).filter(_.startsWith("last 10 s"))
 
-  test("the legend lists the last 10 s if they are drawn, and the paper's if there are any"):
+  test("the legend lists the last 10 s if they are drawn, and the paper's values if there are any"):
     assertEquals(headings(8), Vector.empty)
     assertEquals(headings(12), Vector("last 10 s: ours ●"))
     assertEquals(headings(60), Vector("last 10 s: ours ●, paper ◆"))

@@ -83,7 +83,7 @@ class ExperimentSimulation extends munit.FunSuite, Unhurried:
     within(settling.min, 0, 8)
     within(settling.max, 35, 60)
 
-  test("twenty vehicles over the busy VPN decide ten times a second each, without a lost or refused call"):
+  test("twenty vehicles over the busy VPN decide ten times per second each, without a lost or refused call"):
     val recording = fly(LoopKind.Stream, LatencyProfile.vpn, pairs = 10, seconds = 20)
     val decisions = recording.decisions.groupBy(_.vehicle).view.mapValues(_.size).toMap
     assertEquals(decisions.size, 20)

@@ -25,7 +25,9 @@ class PolicyFlightSimulation extends munit.FunSuite, Unhurried:
     policies = List(policy, policy)
   )
 
-  test("a policy's flights have the delays of the paper's, and recording, replay and report name the policy"):
+  test(
+    "a policy's flights have the delays of the paper's flights; recording, replay and report name the policy"
+  ):
     assertEquals(
       settings.plans.map(plan => (plan.id, plan.seed)),
       Vector("", "-lead-pursuit", "-lead-pursuit-2").flatMap(name =>
@@ -48,7 +50,7 @@ class PolicyFlightSimulation extends munit.FunSuite, Unhurried:
 
     val table = ReportSections.text(Report.of(flown))
     assert(table.contains("stream, lead-pursuit"), table)
-    // As if the flights were as long as the paper's.
+    // As if the flights were as long as the paper's flights.
     val long = flown.map(FlightSummary.of).map(one =>
       one.copy(flight = one.flight.copy(duration = Published.Duration))
     )

@@ -51,7 +51,7 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
     assert(value(result, "slot rms m") < 1.5, result.measured)
 
   test(
-    "twenty vehicles cross over the VPN with at most ten commands a second each, none lost or refused"
+    "twenty vehicles cross over the VPN with at most ten commands per second each, none lost or refused"
   ):
     val recording = fly(settings(Crossing(), LoopKind.Predictive, LatencyProfile.vpn, 12))
     val result    = resultOf(recording)

@@ -40,7 +40,7 @@ class MarginRunsSuite extends munit.FunSuite:
     val killed = fly(stopAfter = 1)(_ => Right(ended(Left(dies), isCut = true)))
     assertEquals(killed.points, Right(Vector(Vector.empty, Vector.empty)))
 
-  test("a later run that cannot begin has no result, and the others keep theirs"):
+  test("a later run that cannot start has no result, and the other runs keep their results"):
     val flown = fly(): number =>
       if number == 1 then Left("no port")
       else if number == 2 then throw IllegalStateException("no answer")

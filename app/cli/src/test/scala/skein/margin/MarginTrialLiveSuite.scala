@@ -42,7 +42,7 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
     assertEquals(ended.printed.trim, "0")
     assert(why(ended.run).exists(_.startsWith("it never connected")), ended.run)
 
-  test("a program that connects, commands nothing and does not end is stopped when its time is over"):
+  test("a program that connects, commands nothing and does not end is stopped when its time has elapsed"):
     assertEquals(why(run(s"$connect; sleep 1000", 2).run), Some("it connected, and commanded nothing"))
 
   test("a run that must stop before its time is marked as cut short, also if its program has ended"):

@@ -11,7 +11,7 @@ class PlotAxisSuite extends munit.FunSuite:
     val axis = PlotAxis.exactly("s", -0.25, 0.25)
     assertEquals(axis.ticks.map(axis.text), Vector("-0.2", "-0.1", "0.0", "0.1", "0.2"))
 
-  test("equal values have an axis, too"):
+  test("an axis can also be made for equal values"):
     val axis = PlotAxis.around("ms", 0, 0)
     assert(axis.from < axis.to)
 

@@ -53,7 +53,7 @@ class NoResultSuite extends munit.FunSuite:
       val row  = ages.rows.find(_.head.startsWith("stream")).get
       assertEquals(row(ages.header.indexOf("true own")), "")
 
-  test("a paused flight whose clock runs back, leaps or stands still is no reference"):
+  test("a paused flight whose clock runs back, leaps or stands still is not a reference"):
     for
       (clock, why) <- Seq[(Double => Double, String)](
         (s => if s < 6 then s else 12 - s, "ran back by"),
@@ -123,7 +123,7 @@ class NoResultSuite extends munit.FunSuite:
     val said = TimingVerdict.sentence(Report.of(all)).getOrElse(fail("nothing was said"))
     assert(said.contains(" for futures and stream over direct and vpn (at worst "), said)
 
-  test("loops with one verdict are listed together, by link, with the worst of them"):
+  test("loops with equal verdicts are listed together for each link, with the worst of them"):
     val all =
       for
         (loop, index) <- Seq("sequential", "futures", "stream").zipWithIndex

@@ -24,7 +24,7 @@ class ObservedTablesSuite extends munit.FunSuite:
         |""".stripMargin
     )
 
-  test("a name with a comma or a quotation mark stays one cell"):
+  test("a name with a comma or a quotation mark remains one cell"):
     assert(ObservedTables.csv(observed("A, \"B\"").log).contains("0.020000,\"A, \"\"B\"\"\",hover,"))
 
   test("the figure has a bar for each vehicle that was commanded, and there is none without"):

@@ -26,7 +26,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     assertEquals(errors.samples.count(_._1 == 50.0), PredictionErrors.Fewest - 1)
     assertEquals(errors.around(60), None)
 
-  test("the table has no 95 % quantile of a small group, either"):
+  test("the table has no 95 % quantile of a small group"):
     def p95(count: Int) =
       val errors = PredictionErrors(count, Vector.fill(count)((100.0, 0.012)))
       PredictionTable.of(Vector(PredictionGroup("stream", "vpn", errors, PredictionErrors(0, Vector.empty))))
@@ -44,7 +44,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     )
     assertEquals(measured().stretches, Vector.empty)
 
-  test("curves break at ages without measurements, and the legend lists only drawn items"):
+  test("curves have gaps at ages without measurements, and the legend lists only drawn items"):
     def texts(of: PredictionGroup) =
       PredictionFigure(Vector(of)).get.shapes.collect { case text: Mark.Text => text.content }
     def curves(of: PredictionGroup) = PredictionFigure(Vector(of)).get.shapes.count:
@@ -60,7 +60,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     )
     assert(texts(both).contains("others, median"), texts(both))
 
-  test("two ages are no curve, in the picture and in its legend"):
+  test("two ages do not make a curve, in the picture and in its legend"):
     val shapes =
       PredictionFigure(Vector(PredictionGroup("predictive", "vpn", measured(20, 40), measured()))).get.shapes
     // Two discs each for the median and the 95 % quantile, and one each in the legend.

@@ -92,7 +92,7 @@ class TablesSuite extends munit.FunSuite:
     val usual = SummaryTables.counts(Report.of(Seq(paused))).header.map(_.stripPrefix("<"))
     assertEquals(usual.drop(5).toSet, Set("dropped", "skipped", "timed out"))
 
-  test("the text has the sections with content, and no others"):
+  test("the text has only the sections with content"):
     val text = ReportSections.text(set)
     for title <- Seq("Distance between pursuer", "Observations per decision", "What happened", "Deviation") do
       assert(text.contains(title), s"no $title")
@@ -165,7 +165,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(table.header.size, table.rows.head.size)
     assert(PlanTable.note(Report.of(Seq(catches))).contains("Captured: when"))
 
-  test("a distance of exactly 1.5 m is no capture"):
+  test("a distance of exactly 1.5 m is not a capture"):
     val plan = Planned("Pursuer", 1, 10, Vector(1), None, Span.ofMillis(50), 0)
     val row  = PlanTable.of(Report.of(Seq(duel("plan", 2)(_ => 1.5).copy(planned = Vector(plan))))).rows.head
     assertEquals(row.takeRight(2), Vector("never", "0.0 %"))
@@ -180,7 +180,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals((shown("live m"), shown("virtual m"), shown("difference")), ("2.01", "3.01", "-33.2 %"))
     assertEquals(shown("flown otherwise"), "")
 
-  test("plans of teams have no captures"):
+  test("plans of a team do not count captures"):
     val unseen = duel("plan", 2)(pass(0)).copy(
       planned = Vector(Planned("Pursuer", 1, 10, Vector(1), None, Span.ofMillis(50), 0)),
       readings = Vector.empty
@@ -243,7 +243,7 @@ class TablesSuite extends munit.FunSuite:
     assert(!table.header.contains("paper"), table.header)
     assert(table.rows.nonEmpty && table.rows.forall(_.size == table.header.size))
 
-  test("the page states the flights' parameters in their units, and the time of their begin"):
+  test("the page states the flights' parameters with units, and their start times"):
     val page =
       HtmlReport.render(Report.of(Seq(SyntheticFlight("stream", "direct", seed = 7, seconds = 12))), Nil)
     val row = page.drop(page.indexOf("Run parameters")).split("<tr>").last.replaceAll("<[^>]*>", "|")

@@ -44,7 +44,9 @@ class TwinSuite extends munit.FunSuite:
     assertEquals(twin.difference, Some(0.0))
     assertEquals(twin.unlike, Vector.empty)
 
-  test("older data over another link show as that difference, and distances differ relative to the twin's"):
+  test(
+    "older data over another link show as that difference; distances are relative to the twin's distance"
+  ):
     val other = live("stream", "vpn", 1)
     val vpn   = other.copy(heading =
       other.heading.copy(flight = other.flight.copy(link = "direct", duration = Span.ofSeconds(13)))

@@ -18,7 +18,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     candidates.map: c =>
       RunningStats.of(episodes.size)(_ => 10 * c(1) * c(1) + 0.01 * c(2) + c(3))
 
-  test("of many parameters the two most sensitive ones are drawn, with the others at the best values"):
+  test("the two most sensitive of many parameters are drawn, with the others at their best values"):
     val best = Vector(0.5, 0.0, 1.0, 2.0)
     val land = Landscape.of(space, best, evaluator, 0 until 3, () => false, onMap = 5).get
     assertEquals(Landscape.of(space, best, evaluator, 0 until 3, () => true), None)

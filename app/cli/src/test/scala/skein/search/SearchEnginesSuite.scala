@@ -31,7 +31,7 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private def eyeFile(): String =
     Files.writeString(temporaryFolder().resolve("eye.conf"), SearchEnginesSuite.Eye).toString
 
-  test("SIMD results equal the scalar reference's, and a difference is reported"):
+  test("SIMD results equal those of the scalar reference, and a difference is reported"):
     val duel      = setup("stream", "vpn", eye = None)
     val episodes  = 0 until SearchResult.Checked
     val flown     = duel.judges(1)(Judge.Winner).tallies(Vector(duel.space.defaults), episodes).head

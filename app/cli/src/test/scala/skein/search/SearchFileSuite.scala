@@ -170,7 +170,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     Files.delete(folder.resolve(SearchFile.Name))
     Files.delete(folder)
 
-  test("a file that is no search state, or was changed, is refused"):
+  test("a file that is not a search state, or was changed, is refused"):
     val ready = setup("cma-es")
     val whole = SearchFile.json(SearchFile(SearchFile.Version, ready.question, ready.search.start))
     for (text, part) <- Seq(

@@ -68,7 +68,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     )
     assertEquals(judges.valuesUnless(() => true)(Vector(Vector(8.0, 8.0)), 0 until 2), None)
 
-  test("off-ring by whole flights of the scalar engine equals the SIMD result"):
+  test("off-ring measured in whole flights of the scalar engine equals the SIMD result"):
     val reduced = setup()
     val whole   = reduced.flownBy match
       case TeamEngine.Reduced(conditions, delays) =>
@@ -114,7 +114,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
       .get
     assertEquals(broken, ended(ready.search, evaluator))
 
-  test("an impossible search is refused in a line, with the option"):
+  test("an impossible search is refused with one line that names the option"):
     def mistake(of: TeamQuestion) = of.setup.fold(identity, _ => fail("it was taken"))
     assertEquals(
       mistake(question.copy(vary = Vector(Varied("ring", 4, 12)))),

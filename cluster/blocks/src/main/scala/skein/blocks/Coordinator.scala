@@ -6,11 +6,11 @@ import scala.collection.immutable.TreeSet
   * assigned several times; the first answer counts, and later ones are counted as repeats.
   *
   * @param waiting blocks without a worker
-  * @param leases blocks with at least one worker, by number
+  * @param leases blocks with at least one worker, keyed by number
   * @param seldom leases of a single worker, the oldest first; they are assigned again once nothing waits
   * @param workers records of the workers by name, including those that have left
   * @param cores number of cores of all current workers
-  * @param patienceNanos time after which a block is assigned to others, whatever its worker does
+  * @param patienceNanos time after which a block is assigned to other workers too, whatever its worker does
   * @param slowNanos time after which a block may go to a second worker, once nothing waits
   */
 final case class Coordinator private (
@@ -35,7 +35,7 @@ final case class Coordinator private (
       cores = this.cores - before + cores
     )
 
-  /** Removes a lost worker; blocks that only it had wait again, ahead of all others. */
+  /** Removes a lost worker; blocks that only this worker had wait again, ahead of all other blocks. */
   def lost(worker: String): Coordinator =
     workers.get(worker).filter(_.isHere).fold(this): record =>
       released(worker, record.holds).copy(
@@ -208,7 +208,7 @@ object Coordinator:
   /** @param accepted number of blocks whose first answer was received
     * @param repeated number of answers that were not the first
     * @param doubled number of blocks assigned again because nothing else waited
-    * @param lost number of blocks that waited again because their worker was lost
+    * @param lost number of blocks that had to wait again because their worker was lost
     * @param overdue number of blocks that waited again because no answer arrived in time
     */
   final case class Counts(accepted: Long, repeated: Long, doubled: Long, lost: Long, overdue: Long)

@@ -95,7 +95,7 @@ object Ledger:
           Right(Ledger(file, channel, index, found.end, found.broken))
     catch case failed: IOException => Left(s"cannot open the ledger $file: $failed")
 
-  /** A ledger's content, read from the file alone.
+  /** A ledger's content, read from the file only.
     *
     * @param blocks number of records with different keys
     * @param repeats number of records whose key occurred before; any such record is an error

@@ -2,8 +2,8 @@ package skein.blocks
 
 import scala.collection.immutable.TreeMap
 
-/** Blocks without a worker. Blocks that had a worker before are assigned first, by their numbers; then the
-  * others, in order of arrival. Each step takes logarithmic time, even with a million blocks.
+/** Blocks without a worker. Blocks that had a worker before are assigned first, in order of their numbers;
+  * then the other blocks, in order of arrival. Each step takes logarithmic time, even with a million blocks.
   *
   * @param again blocks that had a worker, by their numbers; an answer to them may still arrive
   * @param fresh blocks that never had a worker

@@ -257,7 +257,7 @@ object CoordinatorSimulation:
   def work(number: Int): ArraySeq[Byte] =
     ArraySeq.unsafeWrapArray(ByteBuffer.allocate(128).putInt(number).array)
 
-  /** A block's answer, as long as three candidates' statistics; a function of the work alone. */
+  /** A block's answer, as long as three candidates' statistics; it depends only on the work. */
   def answer(work: ArraySeq[Byte]): ArraySeq[Byte] =
     val number = ByteBuffer.wrap(work.toArray).getInt
     ArraySeq.unsafeWrapArray(ByteBuffer.allocate(60).putDouble(SplitMix64(number).nextDouble()).array)

@@ -76,7 +76,7 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     val (a, _) = take(two.offered(blocks(1)), "anna")
     assertEquals(take(a, "anna", holding = Set(0))._2, None)
 
-  test("a lost worker's blocks wait again ahead of all others, except those that another worker has"):
+  test("a lost worker's blocks wait again ahead of all other blocks, except those that another worker has"):
     val (a, _)    = take(two.offered(blocks(3)), "anna")
     val (b, _)    = take(a, "anna", holding = Set(0))
     val (c, next) = take(b.lost("anna"), "ben")

@@ -121,7 +121,9 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
     open(path).close()
     assert(!Files.exists(path))
 
-  file.test("another question's ledger, and a file that is no ledger, are refused for that reason"): path =>
+  file.test(
+    "another question's ledger, and a file that is not a ledger, are refused for that reason"
+  ): path =>
     written(path, 1)
     val other = Ledger.open(path, ArraySeq.from(Array.fill[Byte](32)(8)))
     assert(other.left.exists(_.contains("another question")), other)

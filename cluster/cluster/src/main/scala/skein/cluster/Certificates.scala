@@ -16,7 +16,9 @@ import scala.util.control.NonFatal
 object Certificates:
   private val Days = 825
 
-  /** The signing key's file: it stays where the certificates are made, and is copied to no other machine. */
+  /** The signing key's file: it stays on the machine that makes the certificates, and must not be copied to
+    * another.
+    */
   private val Signer = "signer.p12"
 
   /** A host's folder name; `*.workers.lab` stands for all hosts of that domain. */

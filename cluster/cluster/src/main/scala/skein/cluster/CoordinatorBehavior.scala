@@ -42,11 +42,11 @@ private[cluster] final class CoordinatorBehavior private (
   private var unsaved = false
   private var isDone  = false
 
-  /** The actors to which messages for each worker go; also of workers that have only received the question.
+  /** The actors to which messages for each worker go; includes workers that have only received the question.
     */
   private var addresses = Map.empty[String, ActorRef[ToWorker]]
 
-  /** Workers with free cores to which no block could be given. */
+  /** Workers with free cores for which there was no block. */
   private var hungry = Set.empty[String]
 
   private var told = Set.empty[WorkerEvent]
@@ -213,7 +213,7 @@ private[cluster] object CoordinatorBehavior:
   case object Cancel                             extends Local
   final case class Unreachable(address: Address) extends Local
 
-  /** The process at this address has left the cluster; another one may use the address. */
+  /** The process at this address has left the cluster; another may use the address. */
   final case class Removed(address: Address) extends Local
 
   final case class Ended(worker: String) extends Local

@@ -19,7 +19,7 @@ import skein.link.{Address, TlsProbe, TransportError}
   */
 final case class Tls(keyStore: Path, trustStore: Path, password: String):
 
-  /** A context for connections other than Pekko's.
+  /** A context for connections that Pekko does not make.
     *
     * @return Left says what is wrong with the files
     */

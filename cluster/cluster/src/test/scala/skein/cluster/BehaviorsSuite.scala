@@ -132,7 +132,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     untilReport(): Unit
     assertEquals((untilReport(), untilReport()), (10, 10))
 
-  test("a worker notices the loss of its own coordinator, and of no other member"):
+  test("a worker notices the loss of its own coordinator, but ignores the loss of other members"):
     val config = NodeConfig.of(Endpoint("127.0.0.1", 0), None).fold(fail(_), identity)
     val node   = ActorSystem("member", config)
     try

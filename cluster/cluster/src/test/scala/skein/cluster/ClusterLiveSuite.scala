@@ -177,7 +177,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   test("garbage sent to the port by an outsider does no harm: members continue, and others can join"):
     coordinating(assertUnharmed(_, None)(garbage))
 
-  test("a stranger's garbage does no harm where certificates are required, either"):
+  test("garbage from a stranger does no harm where certificates are required, either"):
     val own = Some(tls(lab.head))
     coordinating(own)(assertUnharmed(_, own)(garbage))
 
@@ -242,7 +242,9 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val joined = WorkerNode(Endpoint("192.0.2.1", 1), loopback, None, 1, Reversing(), 1.second)(_ => ()).run()
     assert(clue(joined.swap.getOrElse("joined")).contains("certificates"))
 
-  test("nodes join with certificates of one set, but not without, with another set's or another host's"):
+  test(
+    "nodes join with certificates of one set, but not without any, or with those of another set or host"
+  ):
     val Vector(own, elsewhere, _) = lab.map(tls): @unchecked
     val strangers                 = tls(Await.result(makingOthers, 60.seconds).head)
     coordinating(Some(own)): coordinator =>

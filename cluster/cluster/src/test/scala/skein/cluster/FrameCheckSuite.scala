@@ -24,7 +24,7 @@ class FrameCheckSuite extends munit.FunSuite:
   test("frames of allowed length pass, with any content and any segmentation"):
     assertEquals(refused(connection(0, 1, 7, most, 0, 300)), None)
 
-  test("an invalid length is found, also after valid ones: negative, too large, close to 2³¹"):
+  test("an invalid length is detected even after valid ones: negative, too large, close to 2³¹"):
     for length <- Seq(-1, Int.MinValue, most + 1, Int.MaxValue, Int.MaxValue - 8) do
       assertEquals(refused(connection(length)), Some(length))
       assertEquals(refused(connection(3, most, length)), Some(length))

@@ -59,7 +59,7 @@ class PlainEngineSuite extends munit.FunSuite:
     assert(engine.isInboundDone && engine.isOutboundDone)
     assertEquals(told(engine.unwrap(connection(3), ByteBuffer.allocate(20))), (Status.CLOSED, ready, 0, 0))
 
-  test("the engine is a client's once that is set"):
+  test("the engine is in client mode once that is set"):
     val engine = PlainEngine(100)
     assert(!engine.getUseClientMode)
     engine.setUseClientMode(true)

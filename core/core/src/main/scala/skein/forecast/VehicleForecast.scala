@@ -40,7 +40,7 @@ final case class VehicleForecast[S] private (
       )
 
   /** Adds the first reading of a simulator that has restarted with an earlier clock. The state starts from
-    * this reading alone, and earlier predictions are discarded.
+    * this reading only, and earlier predictions are discarded.
     */
   def startedAgain(reading: Stamped[Kinematics]): VehicleForecast[S] =
     copy(state = model.start(reading.value), readings = Vector(reading))

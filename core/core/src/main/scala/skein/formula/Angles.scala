@@ -9,7 +9,7 @@ import skein.formula.Op.*
   *   - The sine and cosine of an angle made of arc tangents, quarter turns and angles of known direction
   *     become products of directions; such an angle wrapped to one turn needs a single arc tangent.
   *   - A part that both branches of a condition contain is computed once.
-  *   - A part that depends on parameters alone becomes a parameter ([[derived]]), which is computed once, in
+  *   - A part that depends only on parameters becomes a parameter ([[derived]]), which is computed once, in
   *     double precision.
   *
   * @param source trace of the old expression
@@ -42,7 +42,7 @@ final class Angles(
     inner(node)
 
   /** Moves parts that both branches of a condition contain out of the condition, and combines factors that
-    * are constant or depend on parameters alone.
+    * are constant or depend only on parameters.
     */
   def factored(node: Node): Node =
     for each <- Trace.landings(node) do plained(each): Unit
@@ -78,7 +78,9 @@ final class Angles(
       source.mul(node.args(0), source.const(node.args(1).value * by))
     else source.mul(node, source.const(by))
 
-  /** A product with what depends on parameters alone: rounded like one with a constant of this value. */
+  /** A product with a factor that depends only on parameters: rounded like a product with a constant of this
+    * value.
+    */
   private def scaledBy(node: Node, by: Node): Node =
     if node.op == Mul && node.args(1).isConst then source.mul(node.args(0), source.mul(node.args(1), by))
     else source.mul(node, by)

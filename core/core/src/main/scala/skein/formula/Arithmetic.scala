@@ -159,8 +159,8 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     case "GT" => trace.lt(b, a)
     case "LE" => trace.not(trace.lt(b, a))
 
-  /** Represents a function of the JDK by one operation; None for a function that the JDK computes from
-    * others.
+  /** Represents a function of the JDK by one operation; None for a function that the JDK computes from other
+    * functions.
     */
   def function(owner: String, name: String, desc: String, args: Vector[Value]): Option[Value] =
     val exact          = owner.endsWith("StrictMath")
@@ -187,7 +187,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
         )
 
   /** Whether a number is a length of time in nanoseconds, as `Span.ofSeconds` and `ofMillis` round it: other
-    * rounded numbers are no times.
+    * rounded numbers are not times.
     */
   private def isNanos(node: Node): Boolean =
     node.op == Op.Mul && node.args.exists(factor => factor.is(1e9) || factor.is(1e6))
@@ -286,5 +286,5 @@ private object Arithmetic:
   private val Exact =
     Set(Op.Sqrt, Op.Abs, Op.Floor, Op.Ceil, Op.Rint, Op.Signum, Op.Min, Op.Max, Op.Remainder)
 
-  /** Functions that the JDK computes from others, in Java code. */
+  /** Functions that the JDK computes from other functions, in Java code. */
   private val Composed = Set("toRadians", "toDegrees", "clamp")

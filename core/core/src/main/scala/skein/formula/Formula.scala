@@ -9,7 +9,7 @@ import skein.formula.Value.*
   * `skein.simd.LaneCompiler` and other compilers can compile it.
   *
   * @param inputs names of the numbers in the arguments
-  * @param outputs nodes of the result, by name; a single number is called `answer`
+  * @param outputs the result's nodes with their names; a single number is called `answer`
   * @param parameters names of the doubles inside the object that the method reads, for example `.weights(3)`
   */
 final class Formula private (
@@ -35,10 +35,10 @@ object Formula:
   /** Traces an object's method.
     *
     * @param method name of the method
-    * @param sizes lengths of arguments that are arrays, by name
+    * @param sizes lengths of arguments that are arrays, keyed by name
     * @param arguments types of its arguments, needed if the class has several methods of that name
-    * @param known constant arguments or fields that are not doubles, by name. If the result contains them,
-    *   only its other fields become outputs
+    * @param known constant arguments or fields that are not doubles, keyed by name. If the result contains
+    *   them, only its other fields become outputs
     * @return Left says why the method cannot be traced
     */
   def of(

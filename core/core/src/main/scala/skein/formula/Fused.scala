@@ -7,7 +7,7 @@ import skein.formula.Op.*
   * equal except for rounding.
   *
   *   - A product that is subtracted is added with one factor negated, if the negation costs nothing.
-  *   - Division by a value that depends on parameters alone becomes multiplication by its reciprocal.
+  *   - Division by a value that depends only on parameters becomes multiplication by its reciprocal.
   *   - An angle that is wrapped only beyond half a turn is always wrapped.
   */
 private[skein] final class Fused(in: Trace, outputs: Vector[Node]):

@@ -214,7 +214,7 @@ object Trace:
       else if isKnown(node) || node.args.nonEmpty && node.args.forall(arg => fixed(arg) || known(arg)) then
         known += node
     val usedLate = mutable.HashSet.from(of)
-    // Conditions are no numbers: what they compare is.
+    // Conditions are not numbers: what they compare is.
     for node <- order.reverseIterator if usedLate(node) && (!known(node) || node.op.isCondition) do
       usedLate ++= node.args
     order.filter(node => known(node) && usedLate(node) && !node.op.isCondition)

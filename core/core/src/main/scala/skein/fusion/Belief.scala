@@ -42,7 +42,7 @@ final case class Belief(
       velocity + noise(dtS)
     )
 
-  /** The estimate updated by a measurement taken at the time of the estimate. */
+  /** The estimate updated with a measurement taken at the time of the estimate. */
   def joined(measured: Measurement): Belief =
     val placed = joinedPosition(measured.positionNed, measured.covariance)
     measured.velocity.fold(placed)(velocity => placed.joinedVelocity(velocity.ned, velocity.covariance))

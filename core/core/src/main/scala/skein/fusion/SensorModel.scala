@@ -3,12 +3,12 @@ package skein.fusion
 import skein.signal.{LatencyDistribution, NormalQuantile}
 import skein.units.*
 
-/** A model of a vehicle that sees its opponent by a camera alone. It determines whether an image shows the
-  * opponent and whether it is detected, the measured position, and the time at which that is known. The model
-  * consists of formulas of both positions, which `skein.identify` fits to flights. Images are taken, sent and
-  * recognised as in `skein.flow.Frames` and `Recognise`; detections enter a [[Fusion]]. The camera points at
-  * the opponent's position as estimated at the last decision, as in `skein.policy.CameraPursuer`; turning and
-  * tilting take no time in this model.
+/** A model of a vehicle that sees its opponent only through a camera. It determines whether an image shows
+  * the opponent and whether it is detected, the measured position, and the time at which that is known. The
+  * model consists of formulas of both positions, which `skein.identify` fits to flights. Images are taken,
+  * sent and recognised as in `skein.flow.Frames` and `Recognise`; detections enter a [[Fusion]]. The camera
+  * points at the opponent's position as estimated at the last decision, as in `skein.policy.CameraPursuer`;
+  * turning and tilting take no time in this model.
   *
   * @param everyS time between images
   * @param fovRad horizontal field of view
@@ -16,7 +16,7 @@ import skein.units.*
   * @param detection probability that an opponent in view is detected
   * @param bearingSdRad standard deviation of the bearing
   * @param rangeBias mean of the measured range divided by the true range
-  * @param rangeSd standard deviation of the measured range, as a share of the range
+  * @param rangeSd standard deviation of the measured range, as a fraction of the range
   * @param takes duration of recognition
   * @param workers number of images recognised simultaneously
   * @param deadlineS deadline for each image's result; a later result is discarded

@@ -1,6 +1,6 @@
 package skein.policy
 
-/** Assigns an opponent to every agent: the nearest of its rivals, and of several equally near the first. Live
+/** Assigns an opponent to every agent: the nearest of its rivals; among equally near rivals, the first. Live
   * loops, virtual time and forward simulation share this rule. Agents are identified by their index in a
   * scenario.
   *

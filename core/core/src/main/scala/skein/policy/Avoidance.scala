@@ -71,9 +71,9 @@ final case class Avoidance(
       else bounds.put(i, 0, 0, HalfPlanes.Always)
     bounds
 
-  /** The half plane of velocities with which this vehicle does its half of avoiding another one. The other
-    * half is left to that vehicle: the plane contains half of the smallest change of the relative velocity
-    * that avoids a conflict within the horizon.
+  /** The half plane of velocities with which this vehicle does its half of avoiding another vehicle. The
+    * other half is left to that vehicle: the plane contains half of the smallest change of the relative
+    * velocity that avoids a conflict within the horizon.
     */
   private def bound(northM: Double, eastM: Double, own: Velocity, its: Velocity): Bound =
     val relative = own - its

@@ -2,7 +2,7 @@ package skein.policy
 
 import skein.units.*
 
-/** Steers by another policy, and points its camera at the opponent. With a sensor, the estimate of
+/** Steers with another policy, and points its camera at the opponent. With a sensor, the estimate of
   * [[skein.scenario.Eye]] is its only knowledge of the opponent. If the vehicle's own position is predicted,
   * the estimate is predicted for that moment too, with constant velocity; otherwise it is used as of the
   * exposure. Before the first detection, the opponent is assumed to be at its start.

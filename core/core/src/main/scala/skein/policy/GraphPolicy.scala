@@ -8,10 +8,10 @@ import skein.formula.{Evaluation, Node, Op}
   * @param settings names of the nodes' parameters
   * @param actions actions and their conditions: the first action whose condition holds is performed; the last
   *   one has no condition
-  * @param starts components of the memory before the first decision; they depend on settings alone
+  * @param starts components of the memory before the first decision; they depend only on settings
   * @param next components of the next memory
   * @param goal the wanted position, north and east, m; empty for a policy without a goal
-  * @param limits a goal's maximum speed, m/s, and minimum separation, m; they depend on settings alone
+  * @param limits a goal's maximum speed, m/s, and minimum separation, m; they depend only on settings
   */
 private[skein] final class PolicyGraph(
     val inputs: Vector[PolicyInput],

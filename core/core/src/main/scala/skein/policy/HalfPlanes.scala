@@ -137,8 +137,8 @@ private[policy] object HalfPlanes:
   /** Bound for a half plane with a normal of 0, which then permits every velocity. */
   val Always: Double = -1e6
 
-  /** Weight of a violation against the distance from the wanted velocity, m/s. It is so large that only edges
-    * within 10⁻³ rad of one another count as parallel.
+  /** Weight of a violation relative to the distance from the wanted velocity, m/s. It is so large that only
+    * edges within 10⁻³ rad of one another count as parallel.
     */
   private val Weight = 1e4
 

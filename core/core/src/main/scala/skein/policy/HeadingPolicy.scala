@@ -35,7 +35,7 @@ trait HeadingPolicy extends Policy:
 
 object HeadingPolicy:
 
-  /** A heading from the present observation alone. */
+  /** A heading computed only from the present observation. */
   trait Memoryless extends HeadingPolicy:
     type Memory = Unit
 

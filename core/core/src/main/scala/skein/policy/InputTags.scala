@@ -3,7 +3,7 @@ package skein.policy
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Numbers that identify the inputs of an example, for tracing: the first is 0. Mutable. */
+/** Identifiers of an example's inputs, for tracing: consecutive numbers from 0. Mutable. */
 private[skein] final class InputTags:
   private val told = Vector.newBuilder[PolicyInput]
   private var next = 0

@@ -72,7 +72,7 @@ final case class KeepSlot(
     (north + aheadM * cos - beside * sin, east + aheadM * sin + beside * cos)
 
 object KeepSlot:
-  /** Minimum of the share of the radius that scales the speed along the circuit. Near the centre of a turn
+  /** Minimum of the fraction of the radius that scales the speed along the circuit. Near the centre of a turn
     * the nearest place on the circuit moves ever faster; this limits it to four times the speed.
     */
   private val LeastShare = 0.25

@@ -14,7 +14,7 @@ import skein.units.*
   * @param decisions number of earlier decisions for this vehicle
   * @param cruise the vehicle's speed according to the scenario
   * @param startDown altitude of the vehicle's start, down, negative above the origin
-  * @param sensed last readings of this vehicle's sensors, by name: those that the policy requests
+  * @param sensed last readings of this vehicle's sensors, keyed by name: those that the policy requests
   *   ([[Policy.sensors]]) and that have arrived
   * @param actsIn predicted time until the command takes effect; zero in loops without predictions
   */

@@ -3,7 +3,7 @@ package skein.policy
 /** A vehicle's decision rule: a pure function from observation and memory to action and next memory. It
   * integrates over measured time ([[Observation.elapsed]]) and never counts its calls: deciding twice as
   * often must not act twice as strongly. It keeps nothing else between decisions, so that a replay can repeat
-  * them from the recording alone.
+  * them from the recording only.
   */
 trait Policy:
 

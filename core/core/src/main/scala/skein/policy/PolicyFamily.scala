@@ -147,7 +147,7 @@ object PolicyFamily:
   private val LearnedPrefix  = "learned:"
   private val ClimbingPrefix = "climbing:"
 
-  /** Why a family's name conflicts with the others, if it does. */
+  /** Why a family's name conflicts with those of other families, if it does. */
   def mistake(own: Vector[PolicyFamily]): Option[String] =
     val names = (all ++ own).map(_.name)
     names
@@ -170,7 +170,7 @@ object PolicyFamily:
       chauffeurEvader
     )
 
-  /** The family of this name, Skein's or the program's own.
+  /** The family of this name, one of Skein's or of the program's own families.
     *
     * @param own further families that the program knows
     * @return Left says which names were expected

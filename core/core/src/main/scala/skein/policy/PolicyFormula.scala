@@ -29,11 +29,11 @@ final class PolicyFormula private (
   def fits(policy: Policy, assignment: Assignment): Boolean =
     formula.fits(Deciding(policy, assignment)) && (isBegun(policy) || start.isLike(memoryOf(policy)))
 
-  /** The formula's parameters for a policy that [[fits]]. */
+  /** The formula's parameters for `policy`, which must fit the formula (see [[fits]]). */
   def parametersOf(policy: Policy): Array[Double] =
     formula.parametersOf(Deciding(policy, assignment))
 
-  /** The initial memory of a policy that [[fits]]. */
+  /** The initial memory of `policy`, which must fit the formula (see [[fits]]). */
   def startOf(policy: Policy): Array[Double] =
     (if isBegun(policy) then start else memoryOf(policy)).numbers.toArray
 
@@ -244,7 +244,7 @@ object PolicyFormula:
 private final class Tagged(val self: Int, count: Int, rivals: Vector[Int], isPredicted: Boolean):
   private val tags = InputTags()
 
-  /** The observation as an example for tracing; its inputs are in the order of the formula's. */
+  /** The observation as an example for tracing; its inputs have the order of the formula's inputs. */
   val example: Example = Example(
     "seen",
     Observation(

@@ -11,7 +11,7 @@ final case class Racetrack(straightM: Double, radiusM: Double):
 
   val lengthM: Double = 2 * (straightM + turnM)
 
-  /** The place on the circuit nearest to a point, m along the circuit, from 0 up to [[lengthM]]. */
+  /** The point on the circuit nearest to a given point, m along the circuit, from 0 up to [[lengthM]]. */
   def nearest(northM: Double, eastM: Double): Double =
     if northM > straightM then straightM + radiusM * StrictMath.atan2(northM - straightM, radiusM - eastM)
     else if northM < 0 then

@@ -20,8 +20,8 @@ final case class Weave(speedMps: Double, turnRadps: Double, leastS: Double, most
     val elapsed = seen.elapsed.toSeconds
     val left    = arc.leftS - elapsed
     val isOver  = left <= 0
-    // The arc ends when its time is over, not at the next decision, so that the path does not depend on the
-    // period.
+    // The arc ends when its time has elapsed, not at the next decision, so that the path does not depend on
+    // the period.
     val before  = if isOver then arc.leftS else elapsed
     val number  = if isOver then arc.number + 1 else arc.number
     val remains = if isOver then left + (leastS + (mostS - leastS) * drawn(number)) else left

@@ -5,7 +5,7 @@ import skein.units.Decimals.significant
 import skein.units.Metres
 
 /** Streams of vehicles cross at right angles; each vehicle flies to a goal beyond the crossing and avoids all
-  * others.
+  * other vehicles.
   *
   * @param vehicles number of vehicles, in all streams
   * @param streams number of streams: 2, to the north and to the east, or 4

@@ -6,7 +6,7 @@ import skein.policy.{InputTags, PolicyInput}
 /** A scenario's own end as a formula: [[Scenario.isOver]], read from its bytecode. Its only output is 0 while
   * the flight goes on.
   *
-  * @param formula the formula, whose parameters are the scenario's
+  * @param formula the formula; its parameters are parameters of the scenario
   * @param inputs meaning of each of the formula's inputs; `Elapsed` is the time since the flight's first
   *   decision
   */

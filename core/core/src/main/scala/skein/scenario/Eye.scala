@@ -11,7 +11,7 @@ import skein.units.*
   * @param vehicle name of the vehicle with the camera
   * @param sensor name under which the vehicle's policy reads the estimate: [[Eye.Columns]], valid at the
   *   newest detection's exposure
-  * @param camera name of one of the vehicle's cameras: AirSim's, or the scenario's equipment
+  * @param camera name of one of the vehicle's cameras: a camera of AirSim, or of the scenario's equipment
   * @param target name of the vehicle to detect, for reports
   * @param every period of the images
   * @param recogniser creates an instance for each worker

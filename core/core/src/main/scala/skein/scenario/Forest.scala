@@ -4,8 +4,8 @@ import skein.policy.*
 import skein.units.*
 import skein.units.Decimals.significant
 
-/** Vehicles side by side cross a forest, each along a lane of its own, and detect trees and one another by
-  * lidar alone.
+/** Vehicles side by side cross a forest, each along a lane of its own, and detect trees and one another only
+  * with lidar.
   *
   * @param vehicles number of vehicles
   * @param apartM distance between neighbouring lanes

@@ -22,7 +22,7 @@ final class Measure private (
 
   def title: String = s"$name $unit".trim
 
-  /** The measure of the first vehicles alone; for reports, not for searches. */
+  /** The measure for only the first vehicles; for reports, not for searches. */
   private[scenario] def ofFirst(count: Int): Measure =
     new Measure(name, unit, isCount, over, None, tracks => of(tracks.first(count)))
 

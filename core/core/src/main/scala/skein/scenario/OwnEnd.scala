@@ -21,7 +21,8 @@ private[skein] object OwnEnd:
     val declaring = scenario.getClass.getMethod("isOver", classOf[Known]).getDeclaringClass
     declaring != classOf[Scenario] && !forwards(declaring)
 
-  /** Whether a class only inherits the method; the compiler then generates a method that calls the trait's.
+  /** Whether a class only inherits the method; the compiler then generates a method that calls the trait's
+    * method.
     */
   private def forwards(declaring: Class[?]): Boolean =
     val file = s"/${declaring.getName.replace('.', '/')}.class"

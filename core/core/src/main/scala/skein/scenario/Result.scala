@@ -39,6 +39,6 @@ object Result:
 /** A measure with its value for one flight.
   *
   * @param value None if the flight has none
-  * @param isTooShort whether the flight has no value because it is shorter than the part that is measured
+  * @param isTooShort whether the flight has no value because it is shorter than the measured part
   */
 final case class Measured(measure: Measure, value: Option[Double], isTooShort: Boolean)

@@ -44,7 +44,7 @@ trait Scenario extends Product:
     */
   def isPapersGame: Boolean = false
 
-  /** Whether loops run as in the paper's published code, which confounds its result. */
+  /** Whether loops run as in the paper's published code, whose timing confounds its result. */
   def isAsPublished: Boolean = false
 
   /** Explanation of the measures for the report, in whole sentences. */
@@ -101,7 +101,7 @@ object Scenario:
       .orElse(agents.flatMap(agent => unflyable(agent).map(_ + s", of ${agent.name}")).headOption)
       .map("agents: expected " + _)
 
-  /** Faster than any model of a vehicle flies or drives. */
+  /** A speed above that of every vehicle model. */
   private val MostSpeedMps = 100.0
 
   private def unflyable(agent: Agent): Option[String] =

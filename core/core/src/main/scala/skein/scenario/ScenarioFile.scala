@@ -4,7 +4,7 @@ import skein.formula.{Evaluation, Node}
 import skein.policy.PolicyGraph
 
 /** A scenario as a file of data, without code; `docs/scenario-file.md` defines its lines. The nodes of
-  * vehicles, limits and windows depend on settings alone.
+  * vehicles, limits and windows depend only on settings.
   *
   * @param text the text of the whole file
   * @param over the condition that ends the flight, which depends on positions, velocities and ages
@@ -28,7 +28,7 @@ private[skein] final class ScenarioFile private[scenario] (
   private val places     = fixed.zipWithIndex.toMap
   private val evaluation = Evaluation(fixed)
 
-  /** The values of the nodes that depend on settings alone. */
+  /** The values of the nodes that depend only on settings. */
   private[scenario] def numbers(values: Array[Double]): Node => Double =
     val found = evaluation(Array.emptyDoubleArray, values)
     node => found(places(node))
@@ -62,8 +62,8 @@ private[skein] object ScenarioFile:
 
   /** A quantity over time.
     *
-    * @param graph the quantity as a function of positions alone, which searches can optimise; None if it
-    *   needs more
+    * @param graph the quantity as a function of only positions, which searches can optimise; None if it needs
+    *   more
     */
   private[scenario] final case class Drawn(
       name: String,

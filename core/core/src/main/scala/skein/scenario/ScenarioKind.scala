@@ -67,8 +67,8 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
 
   /** Reads the scenario of a recording.
     *
-    * @param parameters the recorded settings, by name. A missing setting was introduced after the recording,
-    *   and has its default
+    * @param parameters the recorded settings, keyed by name. A missing setting was introduced after the
+    *   recording, and has its default
     */
   def ofRecording(parameters: Map[String, String]): Either[Seq[String], Scenario] =
     read(settings.flatMap(setting => parameters.get(standard.recordedAs(setting)).map(setting -> _)).toMap)

@@ -121,7 +121,7 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers
   def value(): Node     = node(isCondition = false)
   def condition(): Node = node(isCondition = true)
 
-  /** Reads a number that depends on settings alone, and not on observations. */
+  /** Reads a number that depends only on settings, not on observations. */
   def fixed(): Node =
     val one = value()
     if nodes.reads(one) then

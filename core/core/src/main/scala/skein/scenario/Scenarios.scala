@@ -82,7 +82,7 @@ final case class Scenarios(
   /** The scenario of a recording.
     *
     * @param name the recorded [[Scenario.name]]
-    * @param parameters the recorded settings, by name
+    * @param parameters the recorded settings, keyed by name
     * @return Left says why this program does not know the scenario
     */
   def ofRecording(name: String, parameters: Map[String, String]): Either[String, Scenario] =

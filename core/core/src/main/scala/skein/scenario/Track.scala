@@ -4,7 +4,7 @@ import java.util.Locale
 import skein.policy.Role
 import skein.units.*
 
-/** The track of one vehicle, by the simulator's clock. Instants ascend, each occurs once, and there is at
+/** The track of one vehicle, on the simulator's clock. Instants ascend, each occurs once, and there is at
   * least one.
   *
   * @param positionsNed position at each instant, m, world frame
@@ -27,9 +27,9 @@ final case class Track private (
 
   /** The position at a time, m. Between samples it lies on a straight line: a vehicle that circles at 10 m/s
     * with a radius of 8 m, sampled every 100 ms, is less than 2 cm from it. Between samples with measured
-    * velocities that are more than [[Track.LongGap]] apart, as around an outage, it lies on the cubic through
-    * both positions and velocities (Hermite's): over 2 s, that circle is less than 1 m from the cubic, and
-    * 5.5 m from the straight line. Outside the track's times it is the first or last position.
+    * velocities that are more than [[Track.LongGap]] apart, as around an outage, it lies on the Hermite cubic
+    * through both positions and velocities: over 2 s, that circle is less than 1 m from the cubic, and 5.5 m
+    * from the straight line. Outside the track's times it is the first or last position.
     */
   def at(time: Instant): Vector3 = sought(time, positionsNed): above =>
     if isMeasured && times(above).since(times(above - 1)) > Track.LongGap then curved(above, time)
@@ -65,7 +65,7 @@ final case class Track private (
     time.since(times(above - 1)).toSeconds / times(above).since(times(above - 1)).toSeconds
 
 object Track:
-  /** Gap between samples above which the track is a curve: five periods of the usual ten readings a second.
+  /** Gap between samples above which the track is a curve: five periods of the usual ten readings per second.
     */
   val LongGap: Span = Span.ofMillis(500)
 

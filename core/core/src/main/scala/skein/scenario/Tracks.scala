@@ -2,8 +2,8 @@ package skein.scenario
 
 import skein.units.*
 
-/** Positions of all vehicles of a flight at equidistant instants of the simulator's clock, by vehicle and
-  * instant. Vehicles are identified by their index in the scenario. World frame NED, m.
+/** Positions of all vehicles of a flight at equidistant instants of the simulator's clock, indexed by vehicle
+  * and instant. Vehicles are identified by their index in the scenario. World frame NED, m.
   */
 final class Tracks private (
     tracks: Vector[Track],
@@ -27,7 +27,7 @@ final class Tracks private (
   def positionNed(vehicle: Int, instant: Int): Vector3 =
     Vector3(northM(vehicle)(instant), eastM(vehicle)(instant), downM(vehicle)(instant))
 
-  /** The tracks of the first vehicles alone, over the time in which all of these were read. */
+  /** The tracks of only the first vehicles, over the time in which all of these were read. */
   def first(count: Int): Tracks = if count == vehicles.size then this else Tracks.of(tracks.take(count)).get
 
   def positions(instant: Int): Positions =

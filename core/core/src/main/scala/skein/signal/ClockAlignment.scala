@@ -15,9 +15,9 @@ import skein.units.Decimals.fixed
   * Old bounds are widened by [[ClockAlignment.MaxDrift]] with time, so that clocks of different rates cause
   * no contradiction and the estimate follows them. If readings still contradict each other, the simulator was
   * paused or restarted: estimation restarts, and the restart is counted. The bounds of the last few runs are
-  * stored. A late answer from a former run contradicts the present bounds and is compatible with that run's.
-  * It does not affect the present estimate, and counts as older than all readings of the present run,
-  * whatever its time stamp.
+  * stored. A late answer from a former run contradicts the present bounds and is compatible with the bounds
+  * of that run. It does not affect the present estimate, and counts as older than all readings of the present
+  * run, whatever its time stamp.
   *
   * @param lower the offset is at least this
   * @param upper the offset is at most this
@@ -50,7 +50,7 @@ final case class ClockAlignment private (
   /** The controller's time at which the simulator's clock showed `simulatorTime`. */
   def toController(simulatorTime: Instant): Instant = simulatorTime + offset
 
-  /** Time from a reading's sampling to `now`, by the controller's clock. None if the present offset is not
+  /** Time from a reading's sampling to `now`, on the controller's clock. None if the present offset is not
     * valid for the reading: it was sampled before the simulator's clock was reset, and would seem to come
     * from the future.
     */
@@ -118,7 +118,7 @@ final case class ClockAlignment private (
         case run => run
 
   /** Whether a reading may be from this run: it was received after the run was first observed, and its bounds
-    * are compatible with the run's.
+    * are compatible with the bounds of the run.
     */
   private def hasTold(reading: Stamped[?]): Boolean =
     val slack = drift(since = receivedAt, until = reading.receivedAt)
@@ -154,6 +154,6 @@ object ClockAlignment:
   private def boundsOf(reading: Stamped[?]) =
     NewestBounds.Bounds(reading.sentAt.since(reading.validAt), reading.receivedAt.since(reading.validAt))
 
-  /** The largest possible drift between the two clocks from one instant to another. */
+  /** The maximum possible drift between the two clocks from one instant to another. */
   private def drift(since: Instant, until: Instant): Span =
     Span.ofNanos(math.ceil(until.since(since).max(Span.Zero).toNanos * MaxDrift).toLong)

@@ -4,7 +4,7 @@ import skein.units.*
 
 /** Relates the clock of message headers to the receiver's clock, for messages that go in one direction only.
   * The fastest message so far is assumed to have been received when it was sent, so ages are times beyond the
-  * fastest transmission. The clocks may drift. The relation starts anew at a stamp that is earlier than
+  * fastest transmission. The clocks may drift. The relation starts again at a stamp that is earlier than
   * expected by more than [[FastestMessage.Restart]], as after a pause of a simulation, and at every message
   * that is faster than expected.
   *
@@ -23,8 +23,8 @@ final case class FastestMessage(offset: Span, at: Instant):
   def sentAt(validAt: Instant, receivedAt: Instant): Instant = (validAt + offset - Doubt).min(receivedAt)
 
 object FastestMessage:
-  /** Time by which a later message may be faster than the fastest so far; a larger difference contradicts the
-    * clocks' alignment.
+  /** Maximum time by which a later message may be faster than the fastest so far; a larger difference
+    * contradicts the clocks' alignment.
     */
   val Doubt: Span = Span.ofMillis(5)
 

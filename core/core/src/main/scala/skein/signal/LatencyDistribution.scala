@@ -19,7 +19,7 @@ enum LatencyDistribution:
     */
   case Quantiles(probabilities: Vector[Double], roundTripsMs: Vector[Double])
 
-  /** The quantile of the round trips, which a share `p` of them does not exceed.
+  /** The quantile of the round trips: a fraction `p` of them does not exceed it.
     *
     * @param p the share, in [0, 1]; a log-normal distribution has no largest value and is cut at 1 − 10^−12^
     */

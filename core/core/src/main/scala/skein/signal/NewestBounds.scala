@@ -46,8 +46,8 @@ private object NewestBounds:
   final case class Bounds(lower: Span, upper: Span)
 
   /** Number of readings from which the estimate between the bounds is made. More readings estimate a quartile
-    * better; fewer follow drifting clocks sooner. With 20 readings a second, the error for clocks that differ
-    * by 50 parts per million is below 0.5 ms.
+    * better; fewer follow drifting clocks sooner. With 20 readings per second, the error for clocks that
+    * differ by 50 parts per million is below 0.5 ms.
     */
   val Memory = 384
 

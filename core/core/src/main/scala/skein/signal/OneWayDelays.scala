@@ -39,8 +39,8 @@ final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, r
 
 object OneWayDelays:
 
-  /** Approximate number of readings in the means: 1.6 s at 20 readings a second, so that a link that becomes
-    * busy is noticed soon.
+  /** Approximate number of readings in the means: 1.6 s at 20 readings per second, so that a link that
+    * becomes busy is noticed soon.
     */
   val Memory = 32
 

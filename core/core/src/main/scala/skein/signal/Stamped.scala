@@ -12,7 +12,7 @@ import skein.units.*
 final case class Stamped[+A](value: A, validAt: Instant, sentAt: Instant, receivedAt: Instant):
   def map[B](f: A => B): Stamped[B] = copy(value = f(value))
 
-  /** Whether this reading was sampled later than another, as far as the two alone show: by the simulator's
+  /** Whether this reading was sampled later than another, as far as the two alone show: on the simulator's
     * clock, or because it was requested after the other was received. Across a restart of the simulator, use
     * [[ClockAlignment.isNewer]].
     */

@@ -3,7 +3,7 @@ package skein.signal
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Checks from readings alone whether the vehicles' clock runs like the controller's.
+/** Checks, using only readings, whether the vehicles' clock runs at the rate of the controller's clock.
   *
   * Physics was sampled between request and answer, so a reading bounds the clocks' offset from both sides
   * (see [[ClockAlignment]]). Between two readings the offset has changed by at least the gap between their
@@ -108,8 +108,8 @@ object TimeAxis:
   /** Duration of the window within which readings are compared, on the controller's clock. */
   val Window: Span = Span.ofSeconds(10)
 
-  /** Maximum change of the offset within the window, a twentieth of the window. A simulator that computes in
-    * real time stays far below; one on an overloaded machine loses some tenths of a second.
+  /** Maximum change of the offset within the window, a twentieth of the window. A simulator that keeps up
+    * with real time stays far below this; on an overloaded machine it loses some tenths of a second.
     */
   val Most: Span = Span.ofMillis(500)
 

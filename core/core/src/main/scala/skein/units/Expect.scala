@@ -16,7 +16,7 @@ private[skein] object Expect:
     val (wrong, right) = of.map(one).partitionMap(identity)
     Either.cond(wrong.isEmpty, right, wrong.mkString("\n"))
 
-  /** The choice with a label. Left states all labels, and the given text. */
+  /** The choice with this label; Left lists all labels and the given text. */
   def oneOf[A](choices: Array[A], text: String)(label: A => String): Either[String, A] =
     choices.find(label(_) == text).toRight(s"expected ${choices.map(label).mkString(" or ")}, got '$text'")
 

@@ -9,7 +9,7 @@ import scala.util.control.ControlThrowable
 final class OwnFailure(whose: String, reason: String, cause: Throwable | Null = null)
     extends RuntimeException(s"$whose $reason", cause):
 
-  /** The message alone, without the class name, because it is for users, also if another process has sent it.
+  /** Only the message, without the class name, because it is for users, also if another process has sent it.
     */
   override def toString: String = getMessage
 

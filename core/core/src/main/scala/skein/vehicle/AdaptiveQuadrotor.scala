@@ -22,8 +22,8 @@ object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
   /** Longest time between two readings from which the model learns. */
   val LongestGap: Span = Span.ofSeconds(1)
 
-  /** The learned model predicts if its squared error is below this share of the nominal model's, and the
-    * nominal model's squared error is above [[Right]], m²/s².
+  /** The learned model predicts if the nominal model's squared error is above [[Right]], m²/s², and its own
+    * is below this fraction of that.
     */
   private val Better = 0.7
   private val Right  = 1e-6

@@ -2,7 +2,7 @@ package skein.vehicle
 
 /** International Standard Atmosphere (ISO 2533), lowest layer. */
 object Atmosphere:
-  /** Density of air at sea level by the standard atmosphere, kg/m³. */
+  /** Density of air at sea level in the standard atmosphere, kg/m³. */
   val SeaLevelDensity = 1.225
 
   /** Temperature lapse rate divided by the temperature at sea level, 1/m: 0.0065 K/m over 288.15 K. */

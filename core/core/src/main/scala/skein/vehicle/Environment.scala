@@ -2,7 +2,7 @@ package skein.vehicle
 
 import skein.units.Vector3
 
-/** A vehicle's surroundings: air and ground. Constant during a step; pass another one when the wind changes.
+/** A vehicle's surroundings: air and ground. Constant during a step; pass another when the wind changes.
   *
   * @param windNed velocity of the air, m/s; its only effect is drag
   * @param groundDownM z of the flat ground, NED, m; a vehicle touches it when the vehicle's z reaches this

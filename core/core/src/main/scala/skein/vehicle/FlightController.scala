@@ -3,7 +3,8 @@ package skein.vehicle
 import scala.annotation.unused
 
 /** Gains and limits of AirSim's default flight controller, SimpleFlight (its `Params.hpp`, 1.8). Gains that
-  * are zero there have no field here: all derivatives, and all integrals except the vertical velocity's.
+  * are zero there have no field here: all derivatives, and all integrals except that of the vertical
+  * velocity.
   *
   * @param rateP gain: torque command per rad/s
   * @param maxRate maximum rate of roll, pitch and yaw, rad/s
@@ -16,7 +17,7 @@ import scala.annotation.unused
   * @param minThrottle minimum throttle of a velocity controller, so that a falling vehicle can still tilt
   * @param positionP gain: share of `maxVelocity` per m
   * @param maxVelocity maximum velocity that a position error commands, m/s
-  * @param minAnglingThrottle throttle below which all rotors receive the throttle alone, without roll, pitch
+  * @param minAnglingThrottle throttle below which all rotors receive only the throttle, without roll, pitch
   *   and yaw
   */
 final case class ControllerGains(

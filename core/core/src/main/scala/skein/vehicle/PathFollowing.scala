@@ -2,7 +2,7 @@ package skein.vehicle
 
 import skein.units.{Span, Vector3}
 
-/** AirSim's path following: 50 times a second it commands a velocity towards a point ahead on the path
+/** AirSim's path following: 50 times per second it commands a velocity towards a point ahead on the path
   * (`MultirotorApiBase::moveOnPath`).
   */
 object PathFollowing:

@@ -26,7 +26,7 @@ private[vehicle] final case class PendingCommands[C](
     (due, PendingCommands(due.lastOption.fold(acting)(_.command), command, left))
 
 private[vehicle] object PendingCommands:
-  /** @param in time until the command takes effect */
+  /** @param in delay until the command takes effect */
   final case class Coming[C](command: C, in: Span)
 
   def resting[C](command: C): PendingCommands[C] = PendingCommands(command, command, Vector.empty)

@@ -35,7 +35,7 @@ trait PlantTiming:
   */
 trait ObservedPlant[S] extends Plant[S]:
 
-  /** The state corrected by a reading. Parts that a reading lacks (a steering angle, an integrator) stay
+  /** The state corrected with a reading. Parts that a reading lacks (a steering angle, an integrator) stay
     * unchanged.
     *
     * @param seen the reading; north and east may have any origin

@@ -3,7 +3,7 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Predicts horizontal motion by a plant; altitude and orientation stay as in the last reading. A setpoint
+/** Predicts horizontal motion with a plant; altitude and orientation stay as in the last reading. A setpoint
   * that is not a velocity means "stand still".
   */
 final case class PlantModel[S](plant: ObservedPlant[S]) extends VehicleModel[PlantModel.Flying[S]]:

@@ -6,7 +6,7 @@ package skein.vehicle
   *   - along u: v' = (gain · |u| − v) / lag − drag · s · v
   *   - across u: v' = −v / turnLag − drag · s · v
   *
-  * A command takes effect `deadTimeS` after its arrival. s is the speed at the begin of the present piece of
+  * A command takes effect `deadTimeS` after its arrival. s is the speed at the start of the present piece of
   * the flight. A piece begins when a command takes effect, and every [[ReducedModel.PieceS]] after that. So
   * each piece is linear and has a closed form, while drag still increases with the square of the speed.
   * Without drag, pieces of any length are exact.

@@ -18,12 +18,12 @@ import skein.vehicle.Airframe.Gravity
   * steered wheels. Not modelled are the reduced side force of a braking tyre, springs, and changes of the
   * axles' loads.
   *
-  * Defaults are a BMW 320i's, the second vehicle of CommonRoad (Althoff, Koschi, Manzinger, ''CommonRoad:
-  * Composable Benchmarks for Motion Planning on Roads'', IV 2017; vehicle models, parameter set 2): 1093.3
-  * kg, 1791.6 kg·m², μ 1.0489, C_S 20.89 /rad, steered at 0.4 rad/s; power from 11.5 m/s² up to 7.319 m/s.
-  * From other sources: full lock, 40° as in AirSim's car (`CarWheelFront`); the relaxation length, 0.5 m,
-  * within the 0.3 to 0.6 m of passenger cars' tyres; the rolling resistance of 0.015 of the weight, and the
-  * air's, 0.5 · 1.2 kg/m³ · 0.6 m² / m.
+  * Defaults are those of a BMW 320i, the second vehicle of CommonRoad (Althoff, Koschi, Manzinger,
+  * ''CommonRoad: Composable Benchmarks for Motion Planning on Roads'', IV 2017; vehicle models, parameter set
+  * 2): 1093.3 kg, 1791.6 kg·m², μ 1.0489, C_S 20.89 /rad, steered at 0.4 rad/s; power from 11.5 m/s² up to
+  * 7.319 m/s. From other sources: full lock, 40° as in AirSim's car (`CarWheelFront`); the relaxation length,
+  * 0.5 m, within the 0.3 to 0.6 m of passenger cars' tyres; the rolling resistance of 0.015 of the weight,
+  * and the air's, 0.5 · 1.2 kg/m³ · 0.6 m² / m.
   *
   * A pure formula, which the simulator, predictions and SIMD forward simulation share. `SingleTrackSuite`
   * compares it with its sources.

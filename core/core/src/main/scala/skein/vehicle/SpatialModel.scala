@@ -3,9 +3,9 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Predicts motion in space by a plant; the orientation stays as in the last reading. A setpoint that is no
-  * velocity, with or without an altitude, means "stand still". Before the first command the vehicle holds the
-  * altitude of its first reading.
+/** Predicts motion in space with a plant; the orientation stays as in the last reading. A setpoint that is
+  * not a velocity, with or without an altitude, means "stand still". Before the first command the vehicle
+  * holds the altitude of its first reading.
   */
 final case class SpatialModel[S](plant: ObservedSpatialPlant[S]) extends VehicleModel[SpatialModel.Flying[S]]:
   import SpatialModel.*

@@ -28,7 +28,7 @@ trait SpatialPlant[S] extends PlantTiming:
   */
 trait ObservedSpatialPlant[S] extends SpatialPlant[S]:
 
-  /** The state corrected by a reading. Parts that a reading lacks stay unchanged.
+  /** The state corrected with a reading. Parts that a reading lacks stay unchanged.
     *
     * @param seen the reading; north and east may have any origin
     */

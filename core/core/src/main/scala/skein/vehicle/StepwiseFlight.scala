@@ -2,12 +2,12 @@ package skein.vehicle
 
 import skein.units.OwnFailure
 
-/** A vehicle that is simulated by a plant, from one event to the next. A step begins with a command, and
+/** A vehicle that is simulated with a plant, from one event to the next. A step begins with a command, and
   * [[PlantTiming.stepS]] after the begin of the previous step. Mutable. Except for rounding, the division of
   * time into calls of [[advance]] has no effect on the flight. An exception in the plant's step becomes an
   * [[skein.units.OwnFailure]].
   *
-  * @param initial the state before another is set
+  * @param initial the state until another is set
   */
 abstract class StepwiseFlight[S](timing: PlantTiming, initial: S):
   private var stepAtS = 0.0

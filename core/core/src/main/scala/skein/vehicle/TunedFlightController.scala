@@ -6,9 +6,9 @@ package skein.vehicle
   *
   * A controller (`PidController`, `StdPidIntegrator`): out = clip(P·e + I-term + D·de/dt, −1, 1); I-term ←
   * clip(I-term · discount + dt·e·I, −1, 1), where only the vertical velocity's I-term is discounted. When the
-  * mode of an axis changes, its controllers start anew: the first update has neither integral nor derivative,
-  * and the second computes the derivative from a previous error of zero, which causes a kick if D is not
-  * zero. So does AirSim's.
+  * mode of an axis changes, its controllers start again: the first update has neither integral nor
+  * derivative, and the second computes the derivative from a previous error of zero, which causes a kick if D
+  * is not zero. So does AirSim's controller.
   */
 final class TunedFlightController(gains: ControllerGains, val cascade: CascadeGains, stepS: Double)
     extends FlightController(gains, stepS):

@@ -3,9 +3,9 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Predicts a vehicle whose commands are unknown, by samples of its next turns, each simulated by a model of
-  * the vehicle. Its commanded velocity is assumed to turn at one of [[TurnRates.Each]] for a time, and then
-  * at another.
+/** Predicts a vehicle whose commands are unknown, by samples of its next turns, each simulated with a model
+  * of the vehicle. Its commanded velocity is assumed to turn at one of [[TurnRates.Each]] for a time, and
+  * then at another.
   *
   * From velocities and tilts, an extended Kalman filter estimates the commanded velocity: a vehicle that is
   * commanded to turn tilts before its path bends. [[TurnRates]] estimates its turn rate. A prediction is the

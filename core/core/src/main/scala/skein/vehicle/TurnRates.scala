@@ -1,7 +1,7 @@
 package skein.vehicle
 
 /** An estimate of the rate at which a heading turns: probabilities of [[TurnRates.Each]], by Bayes' rule. A
-  * rate is assumed to be held for a while; then another one is taken, more likely one that was seen before.
+  * rate is assumed to be held for a while; then another is taken, more likely one that was seen before.
   * Immutable.
   *
   * At a constant rate the heading is a line in time; measured headings deviate from it, since commands are
@@ -26,7 +26,7 @@ final case class TurnRates private (
   /** The mean of the rates by their probabilities, rad/s. */
   def mean: Double = shares.lazyZip(Each).map(_ * _).sum
 
-  /** The probabilities of the rates that are taken next. */
+  /** The probabilities of the rates that may be used next. */
   def next: Vector[Double] = normalised(spentS)
 
   /** The prediction after `s` seconds: rates may have changed, and headings have turned. */
@@ -76,7 +76,8 @@ object TurnRates:
   /** Turn rates that a vehicle may be commanded, rad/s. */
   val Each: Vector[Double] = Vector.tabulate(17)(number => 0.2 * (number - 8))
 
-  /** Mean time until a rate is drawn anew, s; if few rates are usual, the present one is often drawn again.
+  /** Mean time until a rate is drawn again, s; if few rates are usual, the draw often repeats the present
+    * one.
     */
   val HoldsS: Double = 0.8
 

@@ -19,7 +19,7 @@ trait VehicleModel[S]:
   /** The state after `span` of flight under a setpoint. */
   def advanced(state: S, setpoint: Setpoint, span: Span): S
 
-  /** The state corrected by a reading, `sinceSeen` after the previous reading. */
+  /** The state corrected with a reading, `sinceSeen` after the previous reading. */
   def corrected(state: S, seen: Kinematics, sinceSeen: Span): S
 
   def kinematics(state: S): Kinematics

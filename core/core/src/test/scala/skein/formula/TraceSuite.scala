@@ -6,7 +6,7 @@ class TraceSuite extends munit.FunSuite:
   private def within(a: Node, least: Double, most: Double) =
     trace.binary(Op.Min, trace.binary(Op.Max, a, trace.const(least)), trace.const(most))
 
-  test("limits that a number has already are left out"):
+  test("limits that a number already satisfies are omitted"):
     val once   = within(x, -1, 1)
     val chosen = trace.where(trace.lt(x, trace.const(0)), trace.const(0.5), once)
     for number <- Seq(once, chosen); most <- Seq(1.0, 2.0) do

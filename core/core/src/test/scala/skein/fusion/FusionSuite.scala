@@ -63,7 +63,7 @@ class FusionSuite extends munit.FunSuite:
         for (value, i) <- Vector(came.x, came.y, came.z).zipWithIndex do
           assertEqualsDouble(value, cov(row + i)(column + j), 1e-6, s"seed $seed, ($i, $j)")
 
-  test("a measurement older than the history is refused, one at its limit is added"):
+  test("a measurement older than the history is refused; one at its limit is added"):
     val settings            = FusionSettings(history = Span.ofMillis(100))
     def reading(ms: Double) = Measurement(at(ms), Vector3.Zero, Matrix3.diagonal(1))
     val fusion              = joined(Vector(0, 50, 120, 200).map(ms => reading(ms)), settings)

@@ -27,7 +27,8 @@ class GuidanceSuite extends munit.FunSuite:
       )
     )
 
-  /** Simulates pursuer and evader until they are within the distance of one step, or until the time is over.
+  /** Simulates pursuer and evader until they are within the distance of one step, or until the time has
+    * elapsed.
     */
   private def chase(
       pursuing: HeadingPolicy,

@@ -61,7 +61,9 @@ class TeamPolicySuite extends munit.FunSuite:
         assertEquals((speed, down), (MetresPerSecond(4), seen.startDown))
       case other => fail(s"got $other")
 
-  test("a place on the circuit is found again from its point, and directions are those from point to point"):
+  test(
+    "a distance along the circuit is recovered from its point, and directions are those from point to point"
+  ):
     val circuit = Racetrack(50, 20)
     for step <- 0 until 500 do
       val place         = circuit.lengthM * step / 500

@@ -2,7 +2,7 @@ package skein.scenario
 
 import skein.units.*
 
-/** Limits and measures of two vehicles with prescribed tracks, sampled ten times a second. */
+/** Limits and measures of two vehicles with prescribed tracks, sampled ten times per second. */
 class LimitSuite extends munit.FunSuite:
 
   /** Tracks of two vehicles.

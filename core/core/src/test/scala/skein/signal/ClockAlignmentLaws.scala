@@ -72,7 +72,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
 
   for (link, boundMs) <- Seq(LatencyProfile.direct -> 2.0, LatencyProfile.vpn -> 5.0) do
     test(
-      s"over ${link.name} the estimate is within $boundMs ms after 5 s at 20 readings a second, and stays so"
+      s"over ${link.name} the estimate is, and stays, within $boundMs ms after 5 s at 20 readings per second"
     ):
       for seed <- 1L to 100L do
         val (there, back) = (LatencySampler(link, seed, 2 * seed), LatencySampler(link, seed, 2 * seed + 1))
@@ -88,7 +88,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
           assertEquals(aligned.restarts, 0, s"seed $seed")
 
   test(
-    "clocks whose rates differ by 50 parts per million stay aligned over ten minutes, also without a network"
+    "clocks whose rates differ by 50 parts per million stay aligned over ten minutes, even without a network"
   ):
     for
       legMs <- Seq(0.01, 9.0)

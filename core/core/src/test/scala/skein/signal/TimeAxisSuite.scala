@@ -34,15 +34,15 @@ class TimeAxisSuite extends munit.FunSuite:
     for epoch <- Seq(0.0, 12345.678, -3e8, 1.7e9) do
       assertEquals(fault(readings()((_, s) => epoch + s * 1.0001)), None)
 
-  test("a clock that runs backwards is a fault immediately"):
+  test("a clock that runs backwards is reported as a fault immediately"):
     assertFault(readings()((_, s) => if s < 10 then s else 20 - s), "ran back by 0.")
 
-  test("a clock that stops is a fault within a second, even if vehicles move"):
+  test("a clock that stops is reported as a fault within a second, even if vehicles move"):
     assertFault(readings()((_, s) => s.min(10)), "stood still for 0.")
     assertEquals(fault(readings(10.4)((_, s) => s.min(10))), None)
     assertFault(readings()((_, _) => 0.0), "stood still")
 
-  test("a clock that jumps once is a fault, whatever the direction and size of the jump"):
+  test("a clock that jumps once is reported as a fault, whatever the direction and size of the jump"):
     for jump <- Seq(0.8, 5.0, 3600.0) do
       assertFault(readings()((_, s) => if s < 10 then s else s + jump), "advanced by")
     for jump <- Seq(0.3, 5.0, 3600.0) do
@@ -58,17 +58,17 @@ class TimeAxisSuite extends munit.FunSuite:
       )
     for rate <- Seq(0.9, 1.1) do assertFault(readings()((_, s) => s * rate), "advanced by")
 
-  test("one wrong time stamp is a fault, whatever its value"):
+  test("a single wrong time stamp is reported as a fault, whatever its value"):
     val sound = readings()((_, s) => s)
     for at <- Seq(0L, -1L, Long.MaxValue, Long.MinValue, 42_000_000_000L) do
       val bad = sound.updated(100, (sound(100)._1, sound(100)._2.copy(validAt = Instant.ofNanos(at))))
       assert(fault(bad).isDefined, s"time stamp $at")
 
-  test("a counter that wraps around is a fault"):
+  test("a counter that wraps around is reported as a fault"):
     val wraps = 15.0
     assertFault(readings()((_, s) => s % wraps), "ran back by 14.")
 
-  test("clocks that differ between vehicles are a fault, whose message names both"):
+  test("clocks that differ between vehicles are reported as a fault that names both vehicles"):
     for by <- Seq(0.25, -0.25, 5.0, -3600.0) do
       val told = fault(readings()((vehicle, s) => if vehicle == "a" then s else s + by))
       assert(

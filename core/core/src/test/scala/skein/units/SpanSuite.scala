@@ -18,7 +18,7 @@ class SpanSuite extends munit.FunSuite:
     assertEquals(Span.parse("40"), Left("expected a duration with unit, such as 40s, got '40'"))
     assertEquals(Span.parse("0.5"), Left("expected a duration with unit, such as 0.5s, got '0.5'"))
 
-  test("negative and infinite durations, and text that is no duration, are refused"):
+  test("negative and infinite durations, and text that is not a duration, are refused"):
     assertEquals(Span.parse("-1s"), Left("expected a duration that is not negative, got '-1s'"))
     for text <- Seq("Inf", "soon", "", "NaN", "1e400s", "99999999999d") do
       assertEquals(Span.parse(text), Left(s"expected a duration with unit, such as 100ms, got '$text'"))

@@ -46,7 +46,7 @@ class AdaptiveQuadrotorSuite extends munit.FunSuite:
 
   private def p95(sorted: Vector[Double]) = sorted(sorted.size * 95 / 100)
 
-  test("with a correct nominal model, predictions are the nominal model's, to the bit"):
+  test("with a correct nominal model, predictions equal the nominal model's predictions, to the bit"):
     val (nominal, adaptive, learned) = flown(Deviation())
     assertEquals(adaptive, nominal)
     assert(!learned.helps)

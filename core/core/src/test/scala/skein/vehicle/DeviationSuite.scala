@@ -23,7 +23,7 @@ class DeviationSuite extends munit.FunSuite:
     assert(mistake("").endsWith("; got ''"))
     assert(mistake("weight=2").startsWith("expected mass=FACTOR, "))
 
-  test("each factor changes its own quantity alone"):
+  test("each factor changes only its own quantity"):
     val usual   = Quadrotor.AirSim
     val heavier = Deviation(mass = 1.3).quadrotor
     assertEqualsDouble(heavier.hoverControl(0), 1.3 * usual.hoverControl(0), 1e-12)
@@ -36,7 +36,7 @@ class DeviationSuite extends munit.FunSuite:
     assertEqualsDouble(Deviation(lag = 2).quadrotor.gains.velocityP, usual.gains.velocityP / 2, 1e-12)
     assertEquals(Deviation().quadrotor.airframe, usual.airframe)
 
-  test("without a deviation the vehicle flies as AirSim's, to the bit"):
+  test("without a deviation the vehicle flies exactly like AirSim's vehicle, to the bit"):
     val theirs   = Quadrotor.AirSim.hovering(Vector3(0, 0, -20))
     val ours     = theirs.copy
     val deviated = Deviation().kind(seed = 1).make()

@@ -24,7 +24,7 @@ class SingleTrackSuite extends munit.FunSuite:
     val back = driven(CarState(0, 0, math.Pi / 2), CarControls(-1, 0, 0), 1)
     assert(back.frontMps < -4 && back.eastM < -2, back)
 
-  test("full brakes stop the car within v²/(2 μ g), and it stays"):
+  test("full braking stops the car within v²/(2 μ g), and the car then stays at rest"):
     val stopped = driven(rolling(20), CarControls.Stop, 5)
     assertEquals(stopped.frontMps, 0.0)
     assertEqualsDouble(stopped.northM, 400 / (2 * 1.0489 * gravity), 0.4)
@@ -95,7 +95,9 @@ class SingleTrackSuite extends munit.FunSuite:
     heading
 
   for speedMps <- Seq(7.0, 12.0, 20.0) do
-    test(s"at $speedMps m/s the car turns as the linear single-track model with lagging tyres, within 5 ms"):
+    test(
+      s"at $speedMps m/s the car turns like the linear single-track model with lagging tyres, to within 5 ms"
+    ):
       val steerRad = 0.72 / (speedMps * speedMps)
       for forS <- Seq(0.3, 0.6, 1.2, 2.1) do
         val ours   = driven(rolling(speedMps), keeping(speedMps, steerRad), forS).headingRad

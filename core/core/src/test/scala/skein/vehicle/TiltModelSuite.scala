@@ -3,7 +3,7 @@ package skein.vehicle
 import scala.util.Random
 import skein.units.Vector3
 
-/** Compares the model without rotors and rates with the complete quadrotor; both receive ten commands a
+/** Compares the model without rotors and rates with the complete quadrotor; both receive ten commands per
   * second.
   */
 class TiltModelSuite extends munit.FunSuite:

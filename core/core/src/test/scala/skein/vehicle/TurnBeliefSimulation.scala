@@ -87,7 +87,7 @@ class TurnBeliefSimulation extends munit.FunSuite:
       val turning = rms(errors(ConstantTurn, readings, steps))
       assert(ours < 0.9 * turning, s"$ours and $turning after ${steps * 100} ms")
 
-  test("a vehicle that is commanded otherwise is predicted no worse than by its last turn"):
+  test("a vehicle with other commands than assumed is predicted no worse than by its last turn"):
     val random          = SplitMix64(5)
     val jumping         = Vector.fill(40)(2 * math.Pi * random.nextDouble()).flatMap(Vector.fill(8)(_))
     val readings        = flown(jumping)

@@ -42,7 +42,7 @@ class VehicleModelSuite extends munit.FunSuite:
     flying = model.advanced(flying, commands(1), step * 166)
     assertClose(model.kinematics(flying).positionNed, real.positionNed, 5e-3)
 
-  test("a state of the quadrotor's model is a value, which predictions leave unchanged"):
+  test("a state of the quadrotor's model is immutable: predictions leave it unchanged"):
     val model  = QuadrotorModel.AirSim
     val before = model.start(seen(start, Vector3(1, 2, 0)))
     val was    = model.kinematics(before)

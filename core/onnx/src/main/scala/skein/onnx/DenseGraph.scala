@@ -34,8 +34,8 @@ private[onnx] object DenseGraph:
     "Clip"
   )
 
-  /** Reads a graph as the network of a trained policy. Multiplications, additions and divisions between two
-    * layers are folded into their weights, in doubles.
+  /** Interprets a graph as the network of a trained policy. Multiplications, additions and divisions between
+    * two layers are folded into their weights, in doubles.
     *
     * @return Left says why the graph is not such a network
     */
@@ -60,8 +60,8 @@ private[onnx] object DenseGraph:
   private sealed trait Value
   private final case class Fixed(tensor: Tensor) extends Value
 
-  /** Intermediate result while following the graph: the complete layers, and sums that have no activation
-    * yet.
+  /** Intermediate result while following the graph: the layers found so far, and sums still without an
+    * activation.
     */
   private final case class Flow(layers: Vector[(Affine, Activation)], sums: Affine) extends Value:
     def activated(kind: Activation): Flow =

@@ -20,7 +20,7 @@ object OnnxGraph:
   /** An operation of the graph.
     *
     * @param inputs names of the input values; an empty name means that the input is omitted
-    * @param attributes the operation's attributes, by name
+    * @param attributes the operation's attributes, with their names
     */
   final case class Node(
       operator: String,

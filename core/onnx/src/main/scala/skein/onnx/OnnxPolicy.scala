@@ -14,7 +14,7 @@ import skein.units.{Decimals, Expect}
   * largest turn is one until the next decision (pursuer) or of one decision (evader).
   *
   * @param role the role that the file notes
-  * @param family `learned:…` if the network is one of Skein's
+  * @param family `learned:…` if the network has the form of the networks that Skein trains
   * @param parameters values in the order of the family's axes, for a role
   */
 final case class OnnxPolicy(role: Option[String], family: PolicyFamily, parameters: Role => Vector[Double])
@@ -69,7 +69,7 @@ object OnnxPolicy:
   /** Writes a network as an ONNX file.
     *
     * @param role the role for which it was trained
-    * @return Left says why the policy is no network
+    * @return Left says why the policy is not a network
     */
   def write(policy: Policy, role: String): Either[String, Array[Byte]] =
     (policy match

@@ -11,8 +11,8 @@ import skein.units.*
   * @param failedMoves number of sent moves that the simulator refused or did not answer in time
   * @param heldCalls number of clients' calls that waited until a move of the buffer was answered
   * @param latest greatest delay of a move: from its moment, or from its plan's arrival if that was later,
-  *   until it was sent; by the simulator's clock
-  * @param lostConnections number of connections whose bytes are no MessagePack: all of them pass, plans too
+  *   until it was sent; on the simulator's clock
+  * @param lostConnections number of connections whose bytes are not MessagePack: all of them pass, plans too
   */
 final case class BufferCounts(
     plans: Long = 0,

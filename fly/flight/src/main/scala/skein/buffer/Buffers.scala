@@ -7,7 +7,7 @@ import skein.units.*
 import upack.{Bool, Msg}
 
 /** The buffers of plans on the side of a simulator that has none: decides what happens to each client's call,
-  * and which moves are sent when. Pure: the owner supplies the time, by the machine's clock, and carries out
+  * and which moves are sent when. Pure: the owner supplies the time, on the machine's clock, and carries out
   * the orders. A ticket identifies each call until its verdict.
   *
   * A plan is answered when it arrives, as by the built-in simulator. Before that, the vehicle is read once,
@@ -21,7 +21,7 @@ import upack.{Bool, Msg}
   *
   * @param unnamed the simulator's default vehicle, for calls without a vehicle's name
   * @param known vehicles that have answered a reading
-  * @param waiting plans that wait for a reading of their vehicle, by vehicle
+  * @param waiting plans that wait for a reading of their vehicle, indexed by vehicle
   * @param resets tickets of calls for all vehicles that wait for answers to the buffer's moves
   * @param looking vehicles with a pending reading
   * @param lookAt earliest time of the next reading
@@ -158,7 +158,7 @@ private[buffer] final case class Buffers(
       counts = if before.ours + before.theirs < Moves.InFlight || before.ours == 0 then counts else heldOne
     ))
 
-  /** Passes the calls that may pass, sends the moves that are due, and reads the clock if needed. */
+  /** Passes on the calls that may pass, sends the moves that are due, and reads the clock if needed. */
   private def settled(now: Instant): Stepped =
     vehicles.keys.toVector.sorted
       .foldLeft(letAll())((before, name) => before.and(_.turn(name, now)))

@@ -17,10 +17,11 @@ private[buffer] enum Piece:
     */
   case Call(wish: Wish, id: Option[Long], bytes: ByteString)
 
-/** Cuts one client's stream into the calls that concern the buffer, and all else. Mutable; does no I/O.
+/** Splits one client's stream into the calls that concern the buffer, and everything else. Mutable; does no
+  * I/O.
   *
   * A message is held until it is complete or has [[Wish.MostBytes]]. A longer one passes as it arrives,
-  * except for a plan, which is removed. From the first byte that is no MessagePack on, everything passes.
+  * except for a plan, which is removed. From the first byte that is not MessagePack on, everything passes.
   */
 private[buffer] final class ClientCalls:
   import ClientCalls.*

@@ -10,7 +10,7 @@ import skein.units.*
   *
   * @param begun the newest sent move of the plans in effect
   * @param ours number of unanswered moves of the buffer; `theirs`: of clients
-  * @param readyAt earliest time, by the machine's clock, of the move after the last sent or answered one
+  * @param readyAt earliest time, on the machine's clock, of the move after the last sent or answered one
   * @param held tickets of the clients' moves that wait, the oldest first
   */
 private[buffer] final case class VehicleBuffer(

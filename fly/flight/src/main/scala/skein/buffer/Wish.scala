@@ -17,7 +17,7 @@ private[buffer] enum Wish:
   /** Lets a vehicle hover. Its plans end; older ones that arrive later have no effect. */
   case Hover(vehicle: String)
 
-  /** Ends a vehicle's plans like [[Hover]], by a call that is no move. */
+  /** Ends a vehicle's plans like [[Hover]], by a call that is not a move. */
   case Stop(vehicle: String)
 
   /** Places a vehicle. Its plans end, as with [[Move]]. */
@@ -40,7 +40,7 @@ private[buffer] object Wish:
     case "reset"                                 => Some(Reset)
     case _                                       => None
 
-  /** The meaning of a call too long to decode. A long move may be any vehicle's, so it ends all plans. */
+  /** The meaning of a call too long to decode. A long move may be for any vehicle, so it ends all plans. */
   def ofLong(method: String): Option[Wish] =
     if method == PlanCall.Function then
       Some(Plan(Left(PlanCall.refusal(s"expected a plan of at most $MostBytes bytes, got more"))))

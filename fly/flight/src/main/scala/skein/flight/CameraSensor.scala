@@ -44,7 +44,8 @@ private[skein] final class CameraSensor(
   private val newest                    = AtomicReference(Option.empty[Stamped[IArray[Double]]])
   private val stop                      = KillSwitches.shared(s"eye ${eye.vehicle}")
 
-  // Used by one thread at a time: the stream's, or a reader's while the simulator stands still.
+  // Used by one thread at a time: by the stream's thread, or by a reader's thread while the simulator stands
+  // still.
   private var images, found = 0
   private var newestSeen    = Option.empty[Seen]
   private var fusion        = Fusion(eye.fusion)
@@ -179,7 +180,7 @@ private[skein] object CameraSensor:
 
   /** Counts of an eye's images. After its end, each due image is in one of the other counts.
     *
-    * @param missed number of due images that were not requested, since others were still on their way
+    * @param missed number of due images that were not requested, since others were still in transit
     * @param lost number of images without a result: the call failed, recognition failed or was late, or a
     *   newer one was received first
     * @param searched number of images searched by recognition, with or without a detection

@@ -70,7 +70,7 @@ private[flight] object Custody:
     */
   final case class Known(flown: Set[String] = Set.empty, landed: Set[String] = Set.empty):
 
-    /** Updates the states by the next answers.
+    /** Updates the states with the next answers.
       *
       * @return the new states, and why the flight lost a vehicle, if it did
       */

@@ -5,7 +5,7 @@ import skein.units.*
 import skein.units.Decimals.fixed
 
 /** Checks whether a vehicle can have moved from one reading to the next. One that cannot was placed
-  * elsewhere: by another client's `reset` or pose, or because the answer was another vehicle's.
+  * elsewhere: by another client's `reset` or pose, or because the answer belonged to another vehicle.
   */
 private[flight] object Displacement:
 

@@ -6,7 +6,7 @@ import skein.record.*
 import skein.scenario.{Known, OwnEnd, Scenario}
 import skein.units.*
 
-/** Passes records on to `recorder`, and evaluates at every decision whether the scenario is over, by the
+/** Passes records on to `recorder`, and evaluates at every decision whether the scenario has ended, by the
   * readings that the decision used.
   *
   * @param isPaused whether time stands still during decisions: then ages are zero

@@ -39,7 +39,7 @@ final class EnvironmentSimulator private (
   private val underWay   = names.map(_ => Promise.successful(Right(false)): Promise[Answer]).toArray
   private var failed     = Option.empty[VehicleError]
 
-  // Simulated time was `anchored` at `anchoredAt`, by the controller's clock. Begins at the first reading.
+  // Simulated time was `anchored` at `anchoredAt`, on the controller's clock. Begins at the first reading.
   private var anchored   = Span.Zero
   private var anchoredAt = Option.empty[Instant]
 

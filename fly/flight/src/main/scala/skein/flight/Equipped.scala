@@ -16,7 +16,7 @@ private[skein] object Equipped:
 
   /** A vehicle with its equipment in a scenario.
     *
-    * @param seen sensors from its cameras, by name
+    * @param seen sensors from its cameras, keyed by name
     * @param scanned called with each scan of a lidar, with its name
     */
   def by(

@@ -93,14 +93,14 @@ final class FlightMonitor(
   def simulated: Span =
     if lastAt.get < firstAt.get then Span.Zero else Span.ofNanos(lastAt.get - firstAt.get)
 
-  /** When the newest reading was received, by the controller's clock. */
+  /** When the newest reading was received, on the controller's clock. */
   def heardAt: Option[Instant] = Some(heard.get).filter(_ != Long.MinValue).map(Instant.ofNanos)
 
   /** The last event of a connection that was lost or could not be opened. */
   def broken: Option[Event] = lastBroken
 
-  /** Distance between a vehicle and its opponent at the newest decision, unless the policy considers others
-    * too; and the present age of the newest reading.
+  /** Distance between a vehicle and its opponent at the newest decision, unless the policy also considers
+    * other vehicles; and the present age of the newest reading.
     */
   def lastSeen(now: Instant): Option[LastSeen] =
     for

@@ -4,7 +4,7 @@ import skein.record.{Acknowledgement, CommandOutcome, CommandRow}
 import skein.units.{Instant, Span}
 
 /** Detects whether another client moves a vehicle of the flight. A simulator answers false to a move that was
-  * replaced by another one, or whose time was over. If the flight has sent no newer move and the time was not
+  * replaced by another, or whose time had elapsed. If the flight has sent no newer move and the time was not
   * over, another client's move replaced it. Pure.
   *
   * @param newest sequence and time of the flight's newest move of the vehicle
@@ -23,8 +23,8 @@ private[flight] final case class ForeignMoves(
       sequence == move.command && move.endedAt.since(sentAt) < lasts
     copy(replaced = (replaced :+ isForeign).takeRight(ForeignMoves.Judged))
 
-  /** Whether other clients replaced several of the last moves. A few prove nothing: after a lost answer, the
-    * flight itself ends its newest move ([[skein.airsim.MoveQueue]]).
+  /** Whether other clients replaced several of the last moves. A few replaced moves prove nothing: after a
+    * lost answer, the flight itself ends its newest move ([[skein.airsim.MoveQueue]]).
     */
   def areMany: Boolean = replaced.count(identity) >= ForeignMoves.Many
 

@@ -2,8 +2,8 @@ package skein.flight
 
 import java.util.concurrent.{Callable, ExecutionException, ExecutorCompletionService, Executors, Future}
 
-/** Runs work on separate threads. An exception of one is thrown to the caller, and no further work is begun.
-  * Blocks. Too slow for pieces of work that take microseconds.
+/** Runs work on separate threads. An exception of one is thrown to the caller, and no further work is
+  * started. Blocks. Too slow for pieces of work that take microseconds.
   */
 private[skein] object InParallel:
 

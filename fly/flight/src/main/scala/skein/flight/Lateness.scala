@@ -15,7 +15,7 @@ private[skein] final case class Lateness(ticks: Int = 0, late: Int = 0, most: Sp
 
   /** Adds a tick.
     *
-    * @param by time from when it was due until it ran
+    * @param by time from the moment at which it was due until it ran
     */
   def ticked(by: Span): Lateness =
     Lateness(ticks + 1, if by > Allowed then late + 1 else late, most.max(by))

@@ -50,7 +50,7 @@ final class LiveFlights private (assembler: Vector[FlightAssembly])(using system
 
 object LiveFlights:
 
-  /** Starts all flights, or none.
+  /** Starts either all flights or no flight.
     *
     * @param observe called with each flight's heading; its result is called with every record of that flight,
     *   and must not block

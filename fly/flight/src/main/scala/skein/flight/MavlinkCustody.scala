@@ -14,7 +14,7 @@ private[flight] final class MavlinkCustody(
 ):
   private val doubted = AtomicReference(Set.empty[String])
 
-  /** Why the flight lost a vehicle, if it did: two checks in a row must find so. */
+  /** Why the flight lost control of a vehicle, if it did; two successive checks must agree. */
   def check(): Option[String] =
     val taken =
       for

@@ -14,7 +14,7 @@ import skein.units.*
   * be at their starts already.
   *
   * @param id the flight's name in tables and figures
-  * @param loop one of Skein's, or a user's own graph
+  * @param loop one of Skein's loops, or a user's own graph
   * @param scenario vehicles, policies and measures
   * @param link name of the network between loop and vehicles, for the report
   * @param simulator name of the vehicles' simulator, for the report
@@ -70,7 +70,7 @@ final case class PortFlight(
       (if plans then RecordedPlan.parameters(settings.planning, predictor) else Nil)
   )
 
-  /** Starts it. The recorder receives every record to the last, and is then closed.
+  /** Starts the flight. The recorder receives every record up to the last, and is then closed.
     *
     * @param vehicles one for each agent of the scenario, in its order
     * @param time controls a simulator that can be stopped and stepped: `paused` needs it

@@ -8,9 +8,9 @@ import skein.units.Decimals.fixed
 /** The progress of a flight.
   *
   * @param silentFor time without an answer of the simulator, if it is silent
-  * @param flown elapsed time by the controller's clock
+  * @param flown elapsed time on the controller's clock
   * @param hasEnded whether it has ended, while others still run
-  * @param stepped elapsed time by the simulator's clock, if that advances in steps; it then measures the
+  * @param stepped elapsed time on the simulator's clock, if that advances in steps; it then measures the
   *   flight's duration
   */
 final case class FlightProgress(

@@ -10,12 +10,12 @@ import skein.units.Decimals.fixed
 
 /** Supervises a flight whose simulator may fall silent: silence is reported and recorded within a second, and
   * so is its end. After [[SimulatorWatchdog.GivesUp]] the flight ends. It also ends if the simulator that
-  * answers after a broken connection or a silence is not the original one, if its clock is no time axis
+  * answers after a broken connection or a silence is not the original one, if its clock is not a time axis
   * ([[skein.signal.TimeAxis]]), or if another client has taken the vehicles: such a flight has no result. A
   * clock that does not keep pace is reported. The lateness of control's threads is measured too.
   *
-  * @param isOther checks whether the simulator is another one; `Left` if it did not answer, else the
-  *   evidence, if any
+  * @param isOther checks whether the simulator is another; `Left` if it did not answer, else the evidence, if
+  *   any
   * @param answers requests a sign of life from the simulator over the flight's link
   * @param isShared whether other clients may take the vehicles: then it is checked every
   *   [[SimulatorWatchdog.AskEvery]]
@@ -53,7 +53,7 @@ private[flight] final class SimulatorWatchdog(
   /** Time since the last answer, while the simulator is silent. */
   def silentFor: Option[Span] = life.silentSince.map(clock.now().since(_))
 
-  /** The outcome of the flight when its time is over, unless [[last]] finds another. A simulator that is
+  /** The outcome of the flight when its time has elapsed, unless [[last]] finds another. A simulator that is
     * silent then must still answer.
     */
   def onTime: FlightOutcome =
@@ -162,14 +162,14 @@ private[flight] object SimulatorWatchdog:
   /** Time without an answer after which a flight ends. */
   val GivesUp: Span = Span.ofSeconds(10)
 
-  /** Maximum number of attempts to reach a simulator that is silent when the flight's time is over. Each
+  /** Maximum number of attempts to reach a simulator that is silent when the flight's time has elapsed. Each
     * takes a time-out of [[skein.forward.Asking.Timeout]] and a pause: 6 s in all, more than an outage of a
     * second and the waits of TCP after it.
     */
   private val AttemptsAtEnd = 10
 
-  /** Shortest silence that is reported: at ten decisions a second, it is reported within a second of the last
-    * answer.
+  /** Shortest silence that is reported: at ten decisions per second, it is reported within a second of the
+    * last answer.
     */
   private val ToldAfter = Span.ofMillis(700)
   private val LookEvery = Span.ofMillis(100)

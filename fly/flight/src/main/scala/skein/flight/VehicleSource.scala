@@ -11,7 +11,7 @@ import skein.vehicle.Guidance
   * connects to them.
   */
 trait VehicleSource:
-  /** A word that says where the vehicles are, for messages. */
+  /** A word for messages that states where the vehicles are. */
   def where: String
 
   /** How its vehicles perform an action, for predictions. */

@@ -79,7 +79,7 @@ object VirtualFlights:
   def fly(settings: FlySettings, plan: FlightPlan): Either[String, VirtualFlightResult] =
     fly(settings, plan, RunLimits())
 
-  /** The mistake of flights whose records cannot fit into a [[MemoryRecorder]]. */
+  /** The error message for flights whose records cannot fit into a [[MemoryRecorder]]. */
   def tooLong(settings: FlySettings): Option[String] =
     val vehicles = settings.fleet.agents.size
     val longest  = settings.period * (MemoryRecorder.defaultCapacity / LeastRecords / vehicles)
@@ -133,7 +133,7 @@ object VirtualFlights:
               assembly.landed.map(landed => Right(VirtualFlightResult(landed, recorder)))
       .value
 
-  /** Limits of a flight. A paused flight without delays passes in one instant, so its number of tasks grows
+  /** Limits of a flight. A paused flight without delays takes no virtual time, so its number of tasks grows
     * with its duration.
     */
   private[skein] def limitsOf(loop: AnyLoop, duration: Span, limits: RunLimits = RunLimits()): RunLimits =
@@ -145,8 +145,8 @@ object VirtualFlights:
         processorPerInstant = limits.processorPerInstant + ProcessorPerSecond * seconds
       )
 
-  /** Maximum number of tasks per second. A team of 64 with ten readings and commands a second has a tenth of
-    * this.
+  /** Maximum number of tasks per second. A team of 64 with ten readings and commands per second has a tenth
+    * of this.
     */
   private val TasksPerSecond = 100_000L
 

@@ -11,7 +11,7 @@ import skein.signal.LatencyProfile
 import skein.units.*
 
 /** Simulates the flights in advance, so that the code of a decision is compiled before the first one counts:
-  * in virtual time, over equal links, and then over real sockets. At ten decisions a second a flight of a
+  * in virtual time, over equal links, and then over real sockets. At ten decisions per second a flight of a
   * minute would end before it is compiled: cold, a decision takes many times as long from the reading to the
   * command (`skein.bench.FrameworkLatency`).
   */
@@ -19,7 +19,7 @@ object WarmUp:
   /** Number of virtual flights for a warm-up. */
   val Flights = 20
 
-  /** Real time after which the warm-up ends early, for large teams and for loops that plan. */
+  /** Maximum real time of the warm-up, which large teams and loops that plan would exceed. */
   val AtMost: Span = Span.ofSeconds(3)
 
   /** Duration of each virtual flight: short, so that every loop and link has its turn. */

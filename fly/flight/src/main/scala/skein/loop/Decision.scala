@@ -6,13 +6,13 @@ import skein.units.*
 
 /** A decision for one vehicle, with its inputs.
   *
-  * @param sequence counts the decisions for this vehicle
+  * @param sequence index of the decision among this vehicle's decisions
   * @param view the controller's knowledge
-  * @param opponent the vehicle against which it was decided
+  * @param opponent index of the vehicle that the decision is against
   * @param headingBefore heading of the last command to this vehicle
   * @param elapsed time since this vehicle's previous decision; zero at the first
   * @param action the chosen action
-  * @param plan this decision's action and the foreseen ones after it, if one command sends them together
+  * @param plan this decision's action and the predicted later ones, if one command carries them all
   */
 final case class Decision(
     vehicle: Int,
@@ -25,7 +25,7 @@ final case class Decision(
     action: Action,
     plan: Option[CommandPlan] = None
 ):
-  /** The heading to which it leads; other vehicles observe it as the last commanded one. */
+  /** The resulting heading, which other vehicles observe as the last commanded heading. */
   def heading: Radians = Radians(action.headingRad(headingBefore.value))
 
   /** The action as vehicles perform it. */

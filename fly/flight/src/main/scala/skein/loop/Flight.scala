@@ -37,7 +37,7 @@ final class Flight private (
   /** The outcome as soon as it is decided, before the vehicles hover. */
   def ending: Future[FlightOutcome] = stopping.future
 
-  /** Ends the flight immediately, because it cannot continue. */
+  /** Ends the flight immediately because it cannot continue. */
   def fail(reason: String): Unit =
     val _ = stopping.trySuccess(FlightOutcome.Failed(reason))
 
@@ -50,14 +50,14 @@ final class Flight private (
 
 object Flight:
 
-  /** Runs a loop for `duration`; for `paused`, by the simulator's clock. A failure of the recorder ends the
+  /** Runs a loop for `duration`; for `paused`, on the simulator's clock. A failure of the recorder ends the
     * flight.
     *
     * @param loop one of Skein's loops, or a user's own
     * @param others the controllers of the other vehicles, if each vehicle has one, in a graph of its own. The
     *   first that ends or fails ends all
     * @param time advances the simulator; only `paused` needs it
-    * @param onTime the outcome when its time is over
+    * @param onTime the outcome when its time has elapsed
     * @param on the materializer for one of Skein's loops, by default the system's. A separate one can report
     *   the graph independently: a stream that ends before it answers delays the report of all on its
     *   materializer
@@ -125,7 +125,7 @@ object Flight:
       case Some(error) if !outcome.isInstanceOf[FlightOutcome.Failed] => FlightOutcome.Failed(error.message)
       case _                                                          => outcome
 
-  /** Runs a user's graph. It may ignore the kill switch: then it is aborted after a time. */
+  /** Runs a user's graph. If the graph ignores the kill switch, it is aborted after a time. */
   private def runOwn(
       own: OwnLoop,
       team: Team,

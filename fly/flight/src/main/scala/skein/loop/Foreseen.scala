@@ -16,8 +16,8 @@ private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period
   import Foreseen.*
 
   /** The next [[CommandPlan.Most]] actions of a vehicle and of every vehicle known to decide as it does, from
-    * the time of the view's estimates on; none of other vehicles. Cost: as many decisions of each, and the
-    * predicted flight of all.
+    * the time of the view's estimates on; no actions of other vehicles. Cost: as many decisions of each, and
+    * the predicted flight of all.
     *
     * @param view a view with estimates
     * @param minds the state with which each vehicle decides

@@ -9,7 +9,7 @@ import skein.signal.{Kinematics, Stamped}
 
 /** The messages of one other vehicle. Thread-safe.
   *
-  * @param onDropped called for each message that waited for too long behind others
+  * @param onDropped called for each message that waited for too long behind other messages
   */
 private final class Inbox(
     isNewer: (Stamped[Kinematics], Stamped[Kinematics]) => Boolean,

@@ -20,14 +20,14 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
 
   def regardsTeam(vehicle: Int): Boolean = plannings(vehicles.indexOf(vehicle)).regardsTeam
 
-  /** The planning problems, by vehicle.
+  /** The planning problems, indexed by vehicle.
     *
     * @param views the vehicles' views, with the estimates for the time at which the commands take effect
     */
   def pose(memories: Vector[Memory], views: Vector[TeamView], now: Instant): Vector[Part] =
     plannings.indices.toVector.map(index => plannings(index).pose(memories(index), views(index), now))
 
-  /** The decisions for the plans found, by vehicle. */
+  /** The decisions for the plans found, indexed by vehicle. */
   def decide(
       memories: Vector[Memory],
       views: Vector[TeamView],

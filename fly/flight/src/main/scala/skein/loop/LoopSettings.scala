@@ -31,7 +31,7 @@ import skein.vehicle.{Guidance, QuadrotorModel, VehicleModel}
   * @param planInPacket whether `predictive` sends with each action those that it foresees, to a buffer on the
   *   vehicle's side of the link ([[skein.port.PlanBuffer]]). Such commands are answered when they arrive, so
   *   `movesInFlight` does not limit them, [[skein.port.Moves.MostInFlight]] does
-  * @param knows what the controller of a vehicle knows of the others; `plan` knows all
+  * @param knows what the controller of a vehicle knows of the other vehicles; `plan` knows everything
   * @param strangers how `predictive` predicts vehicles whose commands it does not know
   */
 final case class LoopSettings(

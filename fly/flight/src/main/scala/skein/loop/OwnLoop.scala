@@ -9,7 +9,7 @@ import skein.record.LoopKind
 import skein.scenario.{NamedLoop, Scenarios}
 import skein.units.Span
 
-/** The loop of a flight: one of Skein's, or a user's own. */
+/** The loop of a flight: one of Skein's loops, or a user's own loop. */
 type AnyLoop = LoopKind | OwnLoop
 
 object AnyLoop:
@@ -28,9 +28,10 @@ object AnyLoop:
         s"no loop '$name': expected one of ${names.mkString(", ")}$several"
 
 /** A control loop of a user's own: a graph of a [[Team]]'s operators. It is recorded, reported, run in
-  * virtual time and replayed like Skein's; [[StreamLoop]] uses these operators and is an example.
+  * virtual time and replayed like Skein's loops; [[StreamLoop]] uses these operators and is an example.
   *
-  * @param name the loop's name in recordings, tables and pictures; not one of Skein's
+  * @param name the loop's name in recordings, tables and pictures; must differ from the names of Skein's
+  *   loops
   * @param graph ends its sources when the switch is shut down, and completes its future when every command
   *   has ended; after [[OwnLoop.Grace]] it is aborted. In any case the vehicles are commanded to hover
   *   afterwards

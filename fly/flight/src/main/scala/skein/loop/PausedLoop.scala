@@ -13,7 +13,7 @@ import skein.signal.{Stamped, TimeAxis}
 import skein.units.*
 
 /** The paper's model 1, the ground truth: the simulator stands still while every vehicle is read and
-  * commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
+  * commanded; then it runs exactly one period. Time is simulated time, so no reading has an age.
   *
   * While time stands still readings do not age, so this loop waits: a request without an answer is repeated
   * for up to [[PausedLoop.Patience]], and a step whose answer is lost is repeated only if the simulator's
@@ -34,7 +34,7 @@ object PausedLoop:
       .toMat(Sink.ignore)(Keep.right)
       .mapMaterializedValue(flight.landed)
 
-  /** Time for which a step is retried by the controller's clock, before an error ends the flight: the longest
+  /** Time for which a step is retried on the controller's clock, before an error ends the flight: the longest
     * silence allowed to a simulator.
     */
   val Patience: Span = Span.ofSeconds(9)
@@ -44,8 +44,8 @@ object PausedLoop:
     */
   private[loop] def newest(states: Vector[Stamped[?]]): Instant = states.map(_.validAt).max
 
-  /** Inconsistencies in the readings of a step, a line each: time that passed during reading, and a step with
-    * a wrong duration.
+  /** Inconsistencies in the readings of a step, one line each: time that passed during reading, and a step
+    * with a wrong duration.
     *
     * @param before the readings of the previous step; empty if there is none
     */
@@ -152,7 +152,7 @@ private final class PausedFlight(
 
   /** Runs the simulator for a period from `from`, its present time.
     *
-    * @param since when that began, by the controller's clock
+    * @param since when that began, on the controller's clock
     */
   private def advance(from: Instant, since: Instant): Future[Unit] =
     stepper.continueFor(team.settings.period).flatMap:
@@ -165,7 +165,7 @@ private final class PausedFlight(
           done <- if at.since(from) >= team.settings.period / 2 then Future.unit else advance(from, since)
         yield done
 
-  /** The time at which the simulator stands still, as two readings in a row show it. */
+  /** The time at which the simulator stands still, established by two successive readings. */
   private def standing(before: Option[Instant]): Future[Instant] =
     for
       _  <- after(PausedFlight.LookEvery)(Future.unit)
@@ -184,7 +184,7 @@ private final class PausedFlight(
       case Left(error) if isInVain(error, since) => failed(error)
       case Left(_)                               => after(PausedFlight.LookEvery)(patiently(call, since))
 
-  /** Whether a retry cannot help, or the time for retries is over. */
+  /** Whether a retry cannot help, or the time for retries has elapsed. */
   private def isInVain(error: VehicleError, since: Instant): Boolean = error match
     case VehicleError.Refused(_) | VehicleError.Malformed(_) | VehicleError.Unsupported(_) |
         VehicleError.Cancelled(_) => true
@@ -192,7 +192,7 @@ private final class PausedFlight(
 
   private def failed(error: VehicleError) = Future.failed(LoopFailed(error.message))
 
-  /** Fails if the simulator's clock is no time axis for a flight. */
+  /** Fails if the simulator's clock is not a time axis for a flight. */
   private def verifyStep(step: PausedStep, readings: Vector[Reading]): Unit =
     val (before, read) = (step.view.readings.flatten.map(_.state), readings.map(_.state))
     PausedLoop

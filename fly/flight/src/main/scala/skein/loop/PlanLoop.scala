@@ -8,8 +8,8 @@ import scala.concurrent.Future
 
 /** [[PredictiveLoop]] with planning: for the vehicles of a [[JointPlanning]], thousands of manoeuvres are
   * simulated from the estimates of each tick until the deadline, each vehicle's against the plans of all
-  * others, and the first actions of the best ones are commanded. Estimates are for the moment at which those
-  * commands take effect. All other vehicles decide as in [[PredictiveLoop]].
+  * other vehicles, and the first actions of the best ones are commanded. Estimates are for the moment at
+  * which those commands take effect. All other vehicles decide as in [[PredictiveLoop]].
   */
 object PlanLoop:
 

@@ -17,7 +17,8 @@ import skein.units.*
   * @param blocksPerSlice number of blocks of 128 candidates in a slice, which takes some 0.1 ms; between two
   *   slices a search checks its time
   * @param turningRadiusM turning radius of a vehicle at its commanded speed, m
-  * @param slowestShare least commanded speed, as a share of the vehicle's; 1: only its heading is planned
+  * @param slowestShare least commanded speed, as a fraction of the vehicle's speed; 1: only its heading is
+  *   planned
   * @param separationM separation to be kept from vehicles other than the opponent, m; 0: none
   * @param geofenceM greatest distance from the origin to north and south, east and west, m; 0: none
   * @param kept the scenario's limits that plans keep, with the margin [[PlanSettings.Doubt]], or
@@ -80,7 +81,8 @@ final case class PlanSettings(
   /** These settings with a scenario's limits, except those of custom quantities. */
   def keeping(scenario: Scenario): PlanSettings = copy(kept = scenario.limits.flatMap(_.kept))
 
-  /** The separation of any two vehicles in the scenario's limits, opponents included, m; 0: none. */
+  /** The separation of any two vehicles in the scenario's limits, opponents included, m; 0 if there is none.
+    */
   def apartM: Double = kept.collect { case Kept.Apart(leastM) => leastM }.maxOption.getOrElse(0)
 
   /** A vehicle's speed limited by the scenario's limits, m/s. */
@@ -143,7 +145,7 @@ object PlanSettings:
       summonAll[Tuple.Map[mirror.MirroredElemTypes, Word]].toList.asInstanceOf[List[Word[Any]]]
     )
 
-  /** Reads settings back from their text; absent if it is no such text. */
+  /** Reads settings back from their text; absent if it is not such a text. */
   def parse(text: String): Option[PlanSettings] =
     val values = text.split(' ').collect { case s"$name=$value" => name -> value }.toMap
     val read   = words.flatMap((field, word) => word.read(values, field))

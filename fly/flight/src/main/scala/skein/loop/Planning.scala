@@ -6,9 +6,9 @@ import skein.record.PlannedPath
 import skein.units.*
 import skein.vehicle.{PlaneReading, VehicleKind}
 
-/** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too.
+/** Plans for one vehicle of a scenario: the pure core of the `plan` loop, also used by its replay.
   *
-  * @param foreseen the prediction of the vehicle
+  * @param foreseen the model that predicts the vehicle
   */
 private abstract class Planning(
     fleet: Fleet,
@@ -42,7 +42,7 @@ private abstract class Planning(
 
   /** The decision for the plan found.
     *
-    * @param part the planning problem, whose situation includes the planned tracks of the others
+    * @param part the planning problem, whose situation includes the planned tracks of the other vehicles
     * @param isOld whether the vehicle's policy decides instead of the plan
     */
   final def decide(
@@ -87,7 +87,7 @@ final case class PlannedDecision(
 ):
   /** The report of a planned decision.
     *
-    * @param slices number of slices each search has finished
+    * @param slices number of slices that each search has finished
     */
   def report(slices: Vector[Int]): PlanReport = PlanReport(
     plan.candidates,
@@ -103,7 +103,7 @@ final case class PlannedDecision(
 /** The recorded data of a planned decision.
   *
   * @param candidates number of candidates that all searches simulated together
-  * @param slices number of slices each search has finished
+  * @param slices number of slices that each search has finished
   * @param cost cost of the plan; absent if none was simulated
   * @param isSearched whether any search finished a slice for this vehicle
   * @param byPolicy whether the last plan was too old to continue
@@ -135,7 +135,7 @@ object Planning:
 
   /** The vehicles that plan and those that do not, in a line for the user.
     *
-    * @return Left says that none would: the flight would be that of `predictive` under another name
+    * @return Left if no vehicle would plan: then the flight would be that of `predictive` under another name
     */
   def told(fleet: Fleet): Either[String, String] =
     val (planned, others)            = fleet.agents.partition(plans)
@@ -156,10 +156,10 @@ object Planning:
 
   private val MostNamed = 8
 
-  /** Cost by which a plan must be better than the policy's manoeuvre to be followed. A long search exploits
-    * every small gain of the simple model and of guesses about other vehicles, even if these are wrong; the
-    * policy does not. Vehicles at their goals follow the policy, and plans only if these save some 0.1 m for
-    * a second.
+  /** The cost advantage that a plan needs over the policy's manoeuvre in order to be followed. A long search
+    * exploits every small gain of the simple model and of guesses about other vehicles, even if these are
+    * wrong; the policy does not. Vehicles at their goals follow the policy, and plans only if these save some
+    * 0.1 m for a second.
     */
   private val ClearGain = 0.1
 

@@ -29,7 +29,9 @@ object Reading:
   private[skein] def controllers(heading: RecordingHeader): Int =
     if heading.parameter("decentralised").contains("true") then heading.vehicles.size else 1
 
-  /** The readings that controllers requested themselves, without those received in messages of others. */
+  /** The readings that controllers requested themselves, without those received in messages of other
+    * controllers.
+    */
   private[skein] def asked(recording: Recording): Vector[ReadingRow] =
     if recording.heading.parameter("between").isEmpty then recording.readings
     else

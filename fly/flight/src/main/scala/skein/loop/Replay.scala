@@ -95,7 +95,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
             (states, Difference.between(withSpeed(recorded), withSpeed(decision)))
       .collectFirst { case (_, Some(difference)) => difference }
 
-  /** A decision with its speed, even if that is the vehicle's own and not recorded. */
+  /** A decision with its speed, even if it is the vehicle's own speed, which is not recorded. */
   private def withSpeed(decision: DecisionRow): DecisionRow =
     decision.copy(speed = decision.speed.orElse(indexOf.get(decision.vehicle).map(fleet.agents(_).speed)))
 

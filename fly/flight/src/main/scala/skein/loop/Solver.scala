@@ -10,13 +10,13 @@ trait Solver:
   /** Requests decisions for one vehicle, or for those that plan together. A request leaves every older one
     * for these vehicles without an answer.
     *
-    * @param deciders a constant group, and no vehicle in two groups
+    * @param deciders a group that never changes; no vehicle may be in two groups
     * @param remembered the last answer that was used, by which the solver finds its memory of these vehicles;
     *   absent before the first
     * @param askedAt time of the request, on the controller's clock, like `until`, after which an answer is
     *   discarded
     * @param searching time that the solver has for its search: not counted in [[delay]]
-    * @return fails if no answer can be received; never completes if none is received in time
+    * @return fails if no answer can be received; never completes if no answer is received in time
     */
   def ask(
       deciders: Vector[(vehicle: Int, memory: Memory)],

@@ -13,10 +13,10 @@ import skein.units.*
   *
   * @param solver decides instead of the policies; the settings then have a deadline
   * @param clocks the vehicles' clock against the controller's, as far as known before the first reading
-  * @param only the vehicle of a controller of its own, which reads all vehicles and commands this one;
-  *   without it, all are commanded
+  * @param only the one vehicle that this controller commands, while it reads all; None commands all vehicles
   * @param hold while it is held, the vehicles hover without decisions; they are still read
-  * @param messages messages from which one vehicle's controller knows the others, instead of reading them
+  * @param messages messages from which one vehicle's controller knows the other vehicles, instead of reading
+  *   them
   */
 final class Team(
     val fleet: Fleet,

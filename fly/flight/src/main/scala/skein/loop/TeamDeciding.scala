@@ -110,7 +110,7 @@ private final class TeamDeciding(
 
   /** Requests joint decisions from a solver. Missed deadlines are recorded.
     *
-    * @return the decisions with the answer; without one, they are the fallback's
+    * @return the decisions with the answer; without an answer, the fallback's decisions
     */
   private def askElsewhere(vehicles: Vector[Int], deadline: Deadline, solver: Solver, searching: Span)(using
       ActorSystem
@@ -166,7 +166,7 @@ private final class TeamDeciding(
       deciding.pass(sensing.ageOf(decision.view))
       log.decided(decision)
 
-  /** Decides by a slow policy. A missed deadline is recorded.
+  /** Decides with a slow policy. A missed deadline is recorded.
     *
     * @param instead decides where the deadline is missed ([[skein.policy.KeepHeading]] repeats the last
     *   decision); without it nothing is sent then, and the vehicle continues its last move until that ends
@@ -187,10 +187,11 @@ private final class TeamDeciding(
       .map((made, _) => made.head)
       .via(decided(vehicle))
 
-  /** Joint decisions within a deadline, with the policy's additional result; without that, they are the
-    * fallback's. Missed deadlines are recorded.
+  /** Joint decisions within a deadline, with the policy's additional result; without a result, the fallback
+    * decides. Missed deadlines are recorded.
     *
-    * @param instead the fallback, by vehicle; without one there is no decision where a deadline is missed
+    * @param instead the fallback, indexed by vehicle; without one there is no decision where a deadline is
+    *   missed
     * @param asksAgain see [[Decide.within]]
     */
   private def inTime[A](

@@ -29,7 +29,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
 
   /** A policy missed its deadline.
     *
-    * @param instead the sequence of the fallback's decision, if it made one
+    * @param instead sequence number of the fallback's decision, if it made one
     */
   def missed(vehicle: Int, miss: Overrun, instead: Option[Long]): Unit =
     val done = instead.fold("nothing decided")(sequence => s"decision $sequence by the fallback")

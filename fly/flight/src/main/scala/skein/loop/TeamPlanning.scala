@@ -6,7 +6,7 @@ import skein.units.*
 import skein.vehicle.PlantModel
 
 /** Plans for one vehicle of a team: to reach its policy's goal, and to keep the configured separation from
-  * all others. Those that plan are assumed to follow their plans, the rest to fly straight on.
+  * all other vehicles. Vehicles that plan are assumed to follow their plans, the others to fly straight on.
   *
   * The planned separation is wider than the configured one by [[PlanSettings.Doubt]].
   */
@@ -78,8 +78,8 @@ private final class TeamPlanning(
     val last = track.steps - 1
     StrictMath.hypot(track.x(last) - track.x(0), track.y(last) - track.y(0)) / (last.max(1) * planner.dtS)
 
-  /** The manoeuvre of the policy, unless it avoids others: it does not know their plans, and a search is
-    * better at it.
+  /** The manoeuvre of the policy, unless the policy avoids other vehicles: it does not know their plans, and
+    * a search is better at it.
     */
   private def suggested(
       request: Observation,

@@ -88,7 +88,7 @@ private final class TeamSensing(
           log.unread(vehicle, sequence, error)
           Left(error)
 
-  /** Whether one answer was sampled later than another, by all readings of the team. */
+  /** Whether one answer was sampled later than another, according to all readings of the team. */
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
@@ -186,7 +186,7 @@ private final class TeamSensing(
           case Right(readings) => read(vehicle, isRunning).map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
-  /** Emits once a period from an instant on: the number of ticks due since the last. */
+  /** Emits the number of ticks due since the last element, once per period from a given instant. */
   def ticks(first: Instant): Source[Int, NotUsed] =
     Source.fromGraph(Metronome(first, settings.period, clock))
 

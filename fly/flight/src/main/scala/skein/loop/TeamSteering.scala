@@ -164,7 +164,7 @@ private final class TeamSteering(
 
 private object TeamSteering:
 
-  /** Whether a call's result means that the call neither runs nor is on its way. */
+  /** Whether a call's result means that the call neither runs nor is in transit. */
   private def isCertain(result: Either[VehicleError, Boolean]): Boolean = result.fold(_.isCertain, _ => true)
 
   /** Whether a vehicle has accepted the command to hover, or refused it. */

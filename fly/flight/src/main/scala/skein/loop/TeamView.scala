@@ -21,12 +21,12 @@ final case class SentCommand(
 /** The controller's knowledge of the team: the newest reading and the last move of each vehicle, by index,
   * and the relation of the two clocks.
   *
-  * @param sensed the newest reading of each sensor in use, by vehicle
+  * @param sensed the newest reading of each sensor in use, indexed by vehicle
   * @param forecast present if the loop predicts
   * @param estimates the estimate of every vehicle for the time at which a command decided on this view takes
   *   effect; absent if none are made
   * @param knows what policies may see of the other vehicles
-  * @param strangers predicts each vehicle from its readings alone; present if the loop predicts and commands
+  * @param strangers predicts each vehicle from its readings only; present if the loop predicts and commands
   *   of others are not known
   * @param byMessages the vehicles that are known by messages: how long these took says nothing of when a
   *   command acts

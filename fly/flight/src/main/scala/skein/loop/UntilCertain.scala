@@ -5,13 +5,13 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import skein.units.*
 
-/** Repeats a final command of a flight that must not get lost, with pauses, until its answer is certain. */
+/** Repeats a flight's final command, which must not get lost, at intervals until its answer is certain. */
 private[skein] object UntilCertain:
 
   /** Maximum number of attempts, the first one included. */
   val Attempts = 20
 
-  /** Pause between two attempts, by the actor system's clock. */
+  /** Pause between two attempts, on the actor system's clock. */
   val Pause: Span = Span.ofMillis(500)
 
   /** The result of the last attempt; one that fails is not certain. */

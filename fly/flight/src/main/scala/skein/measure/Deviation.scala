@@ -1,10 +1,10 @@
 package skein.measure
 
 /** The deviation of the flights of one loop over one link, live or virtual, from the paused flight: their
-  * headline measure ([[FlightSummary.headline]]) as a share of the paused flight's, less one, over the
+  * headline measure ([[FlightSummary.headline]]) as a fraction of the paused flight's, minus one, over the
   * flights.
   *
-  * @param name the loop's name, with the policy if it is not the paper's
+  * @param name the loop's name, with the policy unless it is the paper's policy
   * @param share 0.02 means 2 % more
   */
 final case class Deviation(loop: String, name: String, link: String, clock: String, share: Distribution)

@@ -13,7 +13,7 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
 
   def over(link: String): Vector[FlightSummary] = flights.filter(_.flight.link == link)
 
-  /** The paused flight that figures show with the others. [[Truth]] decides with which flight each is
+  /** The paused flight that figures show with the other flights. [[Truth]] decides with which flight each is
     * compared.
     */
   val truth: Option[FlightSummary] =

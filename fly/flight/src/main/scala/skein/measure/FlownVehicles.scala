@@ -8,7 +8,7 @@ import skein.units.*
 /** Extracts from a recording how its vehicles responded to their commands. */
 object FlownVehicles:
 
-  /** The history of each commanded vehicle. All times are the simulator's, from the recording's first
+  /** The history of each commanded vehicle. All times are simulated times, from the recording's first
     * reading.
     *
     * The arrival time of a command is known while the simulator stood still (`paused`). Otherwise it is

@@ -4,10 +4,10 @@ package skein.measure
 object KolmogorovSmirnov:
 
   /** The largest difference between the shares of samples up to a value, over all values: 0 for equal
-    * samples, 1 for samples that lie wholly apart (Smirnov, 1948).
+    * samples, 1 for samples that do not overlap (Smirnov, 1948).
     *
-    * @param within tolerance of values: the share of one sample up to a value is compared with the share of
-    *   the other up to the value plus this
+    * @param within tolerance of values: the fraction of one sample up to a value is compared with the
+    *   fraction of the other up to the value plus this
     */
   def distance(one: Distribution, other: Distribution, within: Double = 0): Double =
     ahead(one, other, within).max(ahead(other, one, within))

@@ -38,11 +38,11 @@ final case class LinkFit(
 object LinkFit:
   /** Fits a link.
     *
-    * Loss: the share of lost requests. Their mean number in a row is fitted if it exceeds that of independent
-    * losses, 1/(1 − share), by three standard errors. Correlation: e^(−Δ/τ) between the ranks of successive
-    * round trips, which are Δ apart; fitted if it exceeds that of independent ranks by three standard errors.
-    * Ranks are used because [[skein.signal.LatencyProfile.Correlated]] holds the share at which the
-    * distribution is read.
+    * Loss: the fraction of lost requests. Their mean number in a row is fitted if it exceeds that of
+    * independent losses, 1/(1 − share), by three standard errors. Correlation: e^(−Δ/τ) between the ranks of
+    * successive round trips, which are Δ apart; fitted if it exceeds that of independent ranks by three
+    * standard errors. Ranks are used because [[skein.signal.LatencyProfile.Correlated]] holds the share at
+    * which the distribution is read.
     */
   def of(traces: Seq[RoundTripTrace]): LinkFit =
     val trips    = traces.flatMap(_.answered).sorted.toVector

@@ -3,7 +3,7 @@ package skein.measure
 import skein.record.{EventKind, Recording}
 import skein.signal.TimeAxis
 
-/** Why a complete flight has no result: its basis of measurement is wrong.
+/** Why a complete flight has no result: the basis of its measurement is invalid.
   *
   * @param what the fault, in two or three words
   * @param why the reason, in a line
@@ -12,7 +12,7 @@ final case class NoResult(what: String, why: String)
 
 object NoResult:
 
-  /** The reason recorded in flight, or else shown by the readings' clock. */
+  /** The reason recorded in flight, or else shown on the readings' clock. */
   def of(recording: Recording): Option[NoResult] =
     val noted = recording.events.collectFirst:
       case event if named.contains(event.kind) => NoResult(named(event.kind), event.detail)

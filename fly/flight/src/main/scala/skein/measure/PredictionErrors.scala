@@ -46,7 +46,7 @@ object PredictionErrors:
 
   private def bin(ageMs: Double): Int = (ageMs / BinMs).round.toInt * BinMs
 
-  /** Errors for the deciding vehicles themselves, and for others; absent if nothing was predicted.
+  /** Errors for the deciding vehicles themselves, and for other vehicles; absent if nothing was predicted.
     *
     * @param isDuel whether all play against one opponent each
     */

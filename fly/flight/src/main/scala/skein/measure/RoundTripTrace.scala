@@ -34,8 +34,8 @@ object RoundTripTrace:
           trips.map(_.map(state => state.receivedAt.since(state.sentAt).toMillis))
         )
 
-  /** Reads the output of `ping`, or lines `time_s,rtt_ms` with nothing behind the comma for a request without
-    * an answer.
+  /** Reads the output of `ping`, or lines `time_s,rtt_ms`; a request without an answer has nothing after the
+    * comma.
     *
     * @return Left says what was expected and received, and in which line
     */

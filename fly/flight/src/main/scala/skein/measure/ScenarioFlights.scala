@@ -12,7 +12,7 @@ final case class ScenarioFlights(
     withoutResult: Vector[FlightSummary]
 ):
 
-  /** The paused flight that figures show with the others. [[Truth]] decides with which flight each is
+  /** The paused flight that figures show with the other flights. [[Truth]] decides with which flight each is
     * compared.
     */
   val truth: Option[ScenarioFlights.Flown] = flights.find(_.summary.flight.isPaused)

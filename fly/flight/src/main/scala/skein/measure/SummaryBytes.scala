@@ -30,7 +30,7 @@ object SummaryBytes:
   /** Decodes a summary.
     *
     * @param scenario the flight's scenario; absent if it is not known
-    * @return Left says why these bytes are no summary
+    * @return Left says why these bytes are not a summary
     */
   def read(bytes: ArraySeq[Byte], scenario: Option[Scenario]): Either[String, FlightSummary] =
     try Right(Codecs(scenario).all.read(DataInputStream(ByteArrayInputStream(inflated(bytes.toArray)))))

@@ -29,7 +29,7 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
       theirs <- Distribution.of(virtual.flatMap(_.headline))
     yield (ours, theirs.mean)
 
-  /** Deviation of the live flight's headline, as a share of the twins'. */
+  /** Deviation of the live flight's headline measure, as a fraction of the twins' measure. */
   def difference: Option[Double] = converged.map((ours, theirs) => ours / theirs - 1)
 
   def seeds: String =

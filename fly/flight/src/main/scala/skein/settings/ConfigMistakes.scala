@@ -44,16 +44,16 @@ private[skein] object ConfigMistakes:
     .distinct
     .mkString("\n")
 
-  /** The source of a value: its option, or file, line and path. Defaults have a path alone. */
+  /** The source of a value: its option, or file, line and path. Defaults have only a path. */
   def at(path: String, origin: ConfigOrigin): String =
     ConfigKeys.optionOf(origin).getOrElse:
       if origin.description.startsWith(Ours) then path else s"${origin.description}: $path"
 
-  /** The source of the value at a path, or the path alone if there is no value. */
+  /** The source of the value at a path, or only the path if there is no value. */
   def at(path: String, config: Config): String =
     if config.hasPath(path) then at(path, config.getValue(path).origin) else path
 
-  /** Joins the lines of a message, such as a library's. */
+  /** Joins the lines of a message, such as a library's exception message, into one line. */
   def oneLine(text: String): String = text.linesIterator.map(_.trim).filter(_.nonEmpty).mkString(" ")
 
   /** Reads a configuration; converts an exception of the library to one line. */

@@ -22,7 +22,7 @@ final case class ModelFile(
 
   val plant: ObservedPlant[?] = use.plant(models(use))
 
-  /** The three-parameter model, for code that supports no other. */
+  /** The three-parameter model, for code that supports only this one. */
   def reduced: Option[ReducedModel] =
     models.get(Structure.Lag).map(lag => ReducedModel.lag(lag(0), lag(1), lag(2)))
 
@@ -32,7 +32,7 @@ object ModelFile:
   /** Tolerance of the altitude, m: within it, a lag of AirSim's changes by 0.1 s. */
   private val SameAltitudeM = 1.0
 
-  /** Why a model of one altitude must not be used at another, if so. */
+  /** Why a model of one altitude must not be used at another altitude, if that is so. */
   def mistake(flownAtM: Option[Double], altitudeM: Double): Option[String] =
     flownAtM
       .filter(flown => math.abs(flown - altitudeM) > SameAltitudeM)

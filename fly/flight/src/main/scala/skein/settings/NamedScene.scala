@@ -24,14 +24,14 @@ object NamedScene:
 
   def shipped(name: String): Option[NamedScene] = SceneFile.named(name).map(NamedScene(name, None, _))
 
-  /** The parameters of a recording: none for the empty scene, and the whole text of a file's. */
+  /** The parameters of a recording: none for the empty scene; for a scene from a file, its whole text. */
   def recorded(flown: NamedScene): Seq[ParameterRow] =
     if flown.name == Empty.name then Nil
     else ParameterRow(Name, flown.name) +: flown.text.toSeq.map(ParameterRow(Text, _))
 
   /** Reads the scene of a recording.
     *
-    * @param parameters the recording's parameters, by name
+    * @param parameters the recording's parameters, keyed by name
     */
   def ofRecording(parameters: Map[String, String]): Either[String, NamedScene] =
     (parameters.get(Name), parameters.get(Text)) match

@@ -39,7 +39,7 @@ final class OutsidePolicy private (connection: OutsidePolicy.Connection, role: R
 object OutsidePolicy:
   private val Name = "outside"
 
-  /** The largest turn rate of a pursuer: the paper's. */
+  /** The largest turn rate of a pursuer, from the paper. */
   val MostTurnRadPerS = 1.0
 
   /** Time-out of an answer: enough for a first one that loads a network. */

@@ -101,8 +101,8 @@ object PolicyFile:
 
   /** A policy from a file, or from a family with its defaults.
     *
-    * @param asked its role if neither file nor family states one; without it, such a family is refused and
-    *   such a file is a pursuer's
+    * @param asked role if neither file nor family states one; without it, such a family is refused and such a
+    *   file is a pursuer's policy
     * @return Left says what was expected and what was given
     */
   def named(text: String, asked: Option[Role])(using Scenarios): Either[String, PolicyFile] =
@@ -114,7 +114,7 @@ object PolicyFile:
 
   /** Reads a file; `evader:FILE` states the role of an ONNX file that does not note it.
     *
-    * @param asked its role in that case; by default a pursuer's
+    * @param asked its role in that case; by default pursuer
     * @return Left says what was expected, what was found, and where
     */
   def read(path: String, asked: Option[Role] = None)(using Scenarios): Either[String, PolicyFile] =

@@ -8,13 +8,13 @@ import skein.vehicle.*
 
 /** The model by which `predictive` predicts a vehicle from its readings. */
 enum PredictionModel:
-  /** One of [[VehicleChoice]]'s, at the altitude of a vehicle. */
+  /** A model of [[VehicleChoice]], at the altitude of a vehicle. */
   case Named(name: String)
 
   /** A first-order response, identified from flights.
     *
-    * @param flownAtM the altitude of these flights, if known: it is used at no other, since AirSim's lag
-    *   depends on it
+    * @param flownAtM the altitude of these flights, if known: the model is not used at other altitudes, since
+    *   AirSim's lag depends on the altitude
     */
   case Fitted(model: ReducedModel, flownAtM: Option[Double] = None)
 

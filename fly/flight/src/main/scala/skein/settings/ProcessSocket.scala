@@ -9,7 +9,7 @@ import skein.units.{Clock, Instant, Span}
 /** A connection to another process, over a Unix socket: requests, and an answer to each. Calls block; a
   * request and its answer together for no longer than `answerWithin` of real time. Not thread-safe.
   *
-  * Every call throws an [[IOException]] if the process has ended or is too late.
+  * Every call throws an [[IOException]] if the process has ended or does not answer in time.
   */
 private[skein] final class ProcessSocket(path: String, answerWithin: Span) extends AutoCloseable:
   private val channel        = SocketChannel.open(UnixDomainSocketAddress.of(path))

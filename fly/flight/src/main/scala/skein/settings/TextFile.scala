@@ -28,7 +28,7 @@ object TextFile:
         val bytes = Using.resource(Files.newInputStream(file))(_.readNBytes(MostBytes + 1))
         Either.cond(
           bytes.length <= MostBytes,
-          // Some editors begin a text with a mark of its byte order, which is no part of it.
+          // Some editors begin a text with a mark of its byte order, which is not part of it.
           UTF_8.newDecoder().decode(ByteBuffer.wrap(bytes)).toString.stripPrefix("\ufeff"),
           s"expected a file of at most ${MostBytes >> 20} MiB, got $path, which is larger"
         )

@@ -5,8 +5,8 @@ import skein.units.Instant
 /** The solver's side of one flight's requests: decides which is next, and from which memory. Immutable.
   * Vehicles with joint decisions count as the first of them.
   *
-  * Each vehicle has one decision in progress. Of requests received meanwhile the newest waits; the others,
-  * and those received after a newer one, are skipped.
+  * Each vehicle has one decision in progress. Of the requests received meanwhile the newest waits; older
+  * requests, and those received after a newer one, are skipped.
   *
   * @param overtaken number of skipped requests
   * @param repeated number of requests received more than once
@@ -39,7 +39,7 @@ final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, 
       val next = known.copy(waiting = None, isBusy = known.waiting.isDefined)
       (copy(vehicles = vehicles.updated(vehicle, next)), known.waiting)
 
-  /** The memory that a request continues; absent if it is not (or no longer) held. */
+  /** The memory from which a request continues; absent if it is not, or no longer, stored. */
   def memory(question: Question, solver: Long): Option[Any] =
     question.remembered.filter(_.solver == solver).flatMap(used =>
       vehicles(question.vehicle).memories.get(used.question)

@@ -73,7 +73,7 @@ final case class Exchange private (
       )
       (copy(told = now, counts = all), more)
 
-  /** Aligns the clocks. Another start of a solver has another clock, and begins new counts. */
+  /** Aligns the clocks. A restarted solver has a new clock, and its counts start at zero. */
   private def aligned(answer: Answer, asked: Instant, at: Instant): Exchange =
     val thinking = answer.answeredAt.since(answer.takenAt).max(Span.Zero)
     // As if the solver had taken no time: then both directions bound the offset.
@@ -134,8 +134,8 @@ object Exchange:
   /** One vehicle's requests.
     *
     * @param next number of the next request
-    * @param open the newest requests without an answer, by number: time of request, deadline, and the part of
-    *   that time for searching
+    * @param open the newest requests without an answer, keyed by number: time of request, deadline, and the
+    *   part of that time for searching
     */
   final case class Vehicle(next: Long, open: Map[Long, (asked: Instant, until: Instant, searching: Span)]):
     private[Exchange] def asked(at: Instant, until: Instant, searching: Span): (Vehicle, Long) =

@@ -10,7 +10,7 @@ import skein.units.*
   *
   * @param id unique identifier of this start
   * @param build this program's build; a flight's must be equal
-  * @param decidersOf the deciders for a flight's briefing, or why there are none; may be slow, of which the
+  * @param decidersOf makes the deciders for a flight's briefing, or states why it cannot; if it is slow, the
   *   flight is informed
   * @param clock the solver's clock, independent of the controllers'
   * @param workers the threads that execute decisions
@@ -41,7 +41,7 @@ final class SolverDesk(
     *
     * @param reply sends to their sender; must not block
     * @return whether any of them was useful: a hello or request of a flight that is, or will be, accepted;
-    *   Left describes what was no message
+    *   Left describes what was not a message
     */
   def received(messages: Seq[Array[Byte]], reply: Array[Byte] => Unit): Either[String, Boolean] =
     val (mistakes, known) = messages.map(SolverMessageCodec.message).partitionMap(identity)
@@ -241,7 +241,7 @@ object SolverDesk:
   /** The solver's counts.
     *
     * @param flights number of accepted flights
-    * @param garbled number of received pieces that were no message, or no request of their flight
+    * @param garbled number of received pieces that were neither a message nor a request of their flight
     */
   final case class Stats(flights: Int, answered: Long, refused: Long, garbled: Long)
 

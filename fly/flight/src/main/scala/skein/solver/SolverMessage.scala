@@ -8,8 +8,8 @@ import skein.settings.{FlightPlan, FlySettings, RecordedPlan}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** A message between a flight and a solver. Instants are the controller's, unless they are marked as the
-  * solver's. Flights and starts of solvers have identifiers that are unique at a solver.
+/** A message between a flight and a solver. Instants are on the controller's clock, unless they are marked as
+  * the solver's. Flights and starts of solvers have identifiers that are unique at a solver.
   */
 enum SolverMessage:
   /** A flight requests a solver's decisions. */
@@ -40,7 +40,7 @@ enum SolverMessage:
 /** The data of a flight that a solver needs: the header of its recording, as far as it concerns decisions.
   *
   * @param parameters parameters as in a recording
-  * @param agents each vehicle and its policy, a line each: equal agents give equal lines in every program
+  * @param agents each vehicle and its policy, one line each: equal agents give equal lines in every program
   */
 final case class Briefing(
     scenario: String,
@@ -120,7 +120,7 @@ final case class Question(
 
 /** An answer to a request.
   *
-  * @param vehicle the first of the request's vehicles
+  * @param vehicle the first vehicle of the request
   * @param solver this start of the solver
   * @param takenAt when the request was received, on the solver's clock
   * @param answeredAt when the answer was sent, on the solver's clock

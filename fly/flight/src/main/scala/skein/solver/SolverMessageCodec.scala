@@ -9,7 +9,7 @@ import skein.record.PlannedPath
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
-/** Messages as bytes: a byte for the version, then as [[Codec]] writes them. */
+/** Messages as bytes: one byte for the version, then the message as [[Codec]] writes it. */
 object SolverMessageCodec:
   /** Version of the encoding; other versions are refused. */
   val Version = 8

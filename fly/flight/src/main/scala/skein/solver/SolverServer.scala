@@ -13,12 +13,12 @@ import skein.units.{Clock, Span}
 
 /** A solver that flights connect to; see [[TcpLink]]. A peer that sends invalid messages, or none at first,
   * loses its connection without further effect. If all seats are taken, a connection without useful messages
-  * is closed for another one; its flight, if there is one, connects again.
+  * is closed to make room for a new one; its flight, if there is one, connects again.
   */
 final class SolverServer private (listening: Listening, switch: SharedKillSwitch, seats: Seats):
   def address: Address = listening.address
 
-  /** Number of connections without useful messages that were closed for others. */
+  /** Number of connections without useful messages that were closed to make room for other connections. */
   def displacedConnections: Long = seats.displacedConnections
 
   /** Number of connections that were refused for lack of a seat. */

@@ -113,7 +113,7 @@ final class TcpLink(
           case QueueOfferResult.Enqueued => Right(())
           case _                         => Left(s"$MostWaiting messages to $to wait already")
 
-    /** Closes; messages already accepted are sent first, if the other side reads them soon. */
+    /** Closes the link; messages already accepted are sent first, if the other side reads them in time. */
     def close(): Future[Done] =
       isClosing = true
       queue.getAndSet(None) match

@@ -67,7 +67,7 @@ class BufferFlightSimulation extends munit.FunSuite, Unhurried:
     .value
 
   test(
-    "through losses and outages, an external buffer's flights are as near to paused as the built-in one's"
+    "through losses and outages, flights with an external buffer are as close to paused as with the built-in"
   ):
     val paused =
       settings.copy(loops = List(LoopKind.Paused), links = List(LatencyProfile.none), planInPacket = false)

@@ -8,7 +8,7 @@ import skein.units.*
 import upack.{Float32, Int32}
 
 /** [[Buffers]] with a minimal simulator: it has a clock, answers readings, and answers a move when its time
-  * is over, or a handover after the next one arrived.
+  * has elapsed, or a handover after the next one arrived.
   *
   * @param roundTrip round trip between the buffer and the simulator
   * @param speed rate of the simulator's clock relative to the machine's

@@ -43,7 +43,7 @@ class BuffersSuite extends munit.FunSuite:
       for seed <- 1L to 20 do
         val random = SplittableRandom(seed)
         val bench  = BuffersBench(speed = speed)
-        // The moves of a buffer in the simulator, by the simulator's clock.
+        // The moves of a buffer in the simulator, on the simulator's clock.
         var own                       = PlanBuffer.empty[PlannedMove]
         var changes                   = Vector.empty[(Instant, PlannedMove)]
         var arrived                   = Vector.empty[Instant]
@@ -118,7 +118,7 @@ class BuffersSuite extends munit.FunSuite:
     bench.pass(10)
     assertEquals(bench.performed.map(_.move.method).toVector, Vector("hover"))
 
-  test("while the simulator stands still no move is performed; afterwards each is at its moment"):
+  test("while the simulator stands still no move is performed; afterwards each move continues at its moment"):
     val bench = BuffersBench()
     bench.plan(1, 100, 150, 200)
     bench.pass(120)

@@ -74,7 +74,7 @@ class ClientCallsSuite extends munit.FunSuite:
       assert(sent - gone < Wish.MostBytes + 1000, s"${sent - gone} bytes held of $sent")
     assertEquals(gone, bytes(image).size)
 
-  test("bytes that are no MessagePack pass, and so do all later ones"):
+  test("bytes that are not MessagePack pass, and so do all later ones"):
     val calls  = ClientCalls()
     val begun  = bytes(plan).take(1)
     val broken = ByteString(0xc1) ++ bytes(plan)

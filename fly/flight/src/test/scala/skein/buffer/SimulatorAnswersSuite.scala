@@ -38,7 +38,7 @@ class SimulatorAnswersSuite extends munit.FunSuite:
         left = rest
       assertEquals(ids, Vector(1L, 70_000L, 4_000_000_000L, 3L), s"seed $seed")
 
-  test("after bytes that are no MessagePack, no ends of messages are found"):
+  test("after bytes that are not MessagePack, no ends of messages are found"):
     val answers = SimulatorAnswers()
     assertEquals(answers.offer(answer(1, Null) ++ ByteString(0xc1)).end, Some(answer(1, Null).size))
     assert(answers.isLost && answers.isMidway)

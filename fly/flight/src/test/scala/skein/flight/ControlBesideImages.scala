@@ -24,7 +24,7 @@ private enum Beside(val name: String):
 
 /** A control loop of 20 ms (`Sense ~> Pace ~> Decide ~> Steer`) over real sockets, with and without a
   * concurrent transfer of raw images of 1280 × 720, in turns: on loopback at 30 Hz, and over an emulated line
-  * of 50 Mbit/s with a round trip of 20 ms, which carries two images a second. Prints a reading's age when
+  * of 50 Mbit/s with a round trip of 20 ms, which carries two images per second. Prints a reading's age when
   * its command leaves, and the time since its arrival:
   * `flight/Test/runMain skein.flight.controlBesideImages 20 3`.
   */

@@ -23,7 +23,7 @@ class DecentralisedLiveSuite extends munit.FunSuite, TemporaryFolders, Waiting:
 
   for between <- Seq(None, Some("loss:10%,constant:40ms")) do
     folder.test(
-      s"every loop's controllers decide each for its vehicle, and their decisions replay; messages $between"
+      s"in every loop each controller decides for its own vehicle, and decisions replay; messages $between"
     ): folder =>
       val settings = FlySettings(
         List(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive),

@@ -73,7 +73,7 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
 
   for loop <- loops do
     folder.test(
-      s"${loop.label}: equal seeds give equal flights, other seeds other ones, and a recording replays"
+      s"${loop.label}: equal seeds give equal flights, different seeds do not, and a recording replays"
     ): folder =>
       // In two duels a decision's opponent depends on readings that it does not record.
       val flight = settings(loop, scenario = PaperDuel(pairs = 2))

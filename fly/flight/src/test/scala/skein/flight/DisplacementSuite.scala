@@ -16,7 +16,7 @@ class DisplacementSuite extends munit.FunSuite:
   private def displaced(from: Stamped[Kinematics], to: Stamped[Kinematics]) =
     Displacement.between("Evader", from, to).isDefined
 
-  test("steady flight, hard braking, a bounce off a wall and a gap in the readings are no displacement"):
+  test("steady flight, hard braking, a bounce off a wall and a gap in the readings are not displacements"):
     assert(!displaced(at(0, 0, 10), at(0.1, 1.0, 10)))
     assert(!displaced(at(0, 0, 10), at(0.1, 0.85, 7)))
     assert(!displaced(at(0, 0, 10), at(0.1, 0.2, -5)))

@@ -10,7 +10,7 @@ import skein.units.*
 
 /** A scenario as a user would write it: its policies do not know its limits. */
 class KeptLimitsSimulation extends munit.FunSuite, Optimised:
-  /** Violations by some vehicles, alone or with others. */
+  /** Violations by some vehicles, alone or together with other vehicles. */
   private def violations(scenario: Scenario, loop: LoopKind, by: Int*) =
     val few      = PlanSettings(searches = 1, slices = 4, blocksPerSlice = 2)
     val links    = List(LatencyProfile.vpn)

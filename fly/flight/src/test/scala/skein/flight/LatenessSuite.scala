@@ -16,5 +16,5 @@ class LatenessSuite extends munit.FunSuite:
       Some("the machine was too busy: 17 % of 600 ticks came more than 20 ms late, one 310 ms")
     )
 
-  test("a few ticks allow no judgement"):
+  test("a few ticks are too few for a judgement"):
     assertEquals(ticked(Seq.fill(10)(500.0)*).starved, None)

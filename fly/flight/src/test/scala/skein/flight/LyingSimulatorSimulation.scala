@@ -181,7 +181,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     ("moves a vehicle", moves(_), "another client moves Pursuer")
   )
 
-  /** Moves the pursuer ten times a second, for three seconds. */
+  /** Moves the pursuer ten times per second, for three seconds. */
   private def moves(client: AirSimClient)(using system: ActorSystem): Future[Any] =
     val pursuer                        = Multirotor(client, "Pursuer")
     def again(left: Int): Future[Unit] =
@@ -196,7 +196,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     test(s"${loop.label}: another client that $what ends the flight without result, and is reported"):
       fly(loop, acts = acts).assertNoResult(EventKind.VehicleTaken, words)
 
-  test("one or two foreign moves are tolerated, and so are moves whose time was over"):
+  test("one or two foreign moves are tolerated, and so are moves whose time had elapsed"):
     def at(ms: Double)    = Instant.Epoch + Span.ofMillis(ms)
     def move(number: Int) =
       CommandRow(number, "A", None, MetresPerSecond(0), MetresPerSecond(0), Metres(0), at(100.0 * number))
@@ -227,7 +227,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     assertEqualsDouble(disarmed._1, alone._1, 0.001, "it sank")
     assertEqualsDouble(disarmed._2, alone._2, 0.001, "it flew another way")
 
-  test("stream: another client that pauses the simulator ends the flight without result"):
+  test("stream: if another client pauses the simulator, the flight ends without a result"):
     fly(LoopKind.Stream, acts = _.pause()).assertNoResult(EventKind.ClockBroken, "stood still")
 
   test("paused: another client that resumes the simulator is recorded"):

@@ -30,7 +30,7 @@ class MavlinkFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       assert(over.recorder.recording.decisions.size >= 320, s"${over.recorder.recording.decisions.size}")
 
     test(s"over $link, ages are correct within 5 ms, from the first decision on"):
-      // The vehicles' clock began with the flight's.
+      // The vehicles' clock started when the flight's clock started.
       val began     = over.recorder.recording.heading.flight.startedAt
       val decisions = over.recorder.recording.decisions
       val errors    =

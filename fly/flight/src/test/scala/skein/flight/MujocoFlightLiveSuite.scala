@@ -45,7 +45,7 @@ class MujocoFlightLiveSuite extends MujocoHere:
         assertNotEquals(places, tracks(ours)(name), "it is not MuJoCo's")
       assert(theirs.heading.parameter("plant").exists(_.endsWith(example("quadrotor"))))
 
-  test("a flight of a MuJoCo model repeats to the bit"):
+  test("a repeated flight of a MuJoCo model is identical to the bit"):
     assumeMujoco()
     def again() = tracks(flown(example("slung-load"), LoopKind.Stream))
     assertEquals(again(), again())

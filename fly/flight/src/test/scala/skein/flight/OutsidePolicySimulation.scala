@@ -9,7 +9,7 @@ import skein.signal.LatencyProfile
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Flights in virtual time by a policy behind a socket. */
+/** Flights in virtual time with a policy behind a socket. */
 class OutsidePolicySimulation extends munit.FunSuite, Unhurried:
   private val settings = FlySettings(
     List(LoopKind.Stream),
@@ -51,7 +51,7 @@ class OutsidePolicySimulation extends munit.FunSuite, Unhurried:
       assertEquals(missed(outside), Vector.empty)
       assertEquals(headings(outside), headings(own))
 
-  test("if the outside policy fails, the fallback decides, and each recorded event states why"):
+  test("if the external policy fails, the fallback decides, and each recorded event states the reason"):
     val (outcome, recording) = flownBy(timely): (number, seen) =>
       Some(if number % 2 == 0 then Peer.refusal("no such luck") else Peer.pursuer(seen))
     assertEquals(outcome, FlightOutcome.Completed)

@@ -109,7 +109,7 @@ class OwnLoopSimulation extends munit.FunSuite, Unhurried:
     val landed = fly(broken)
     assertEquals((landed.outcome, landed.hovers), (FlightOutcome.Failed("no such instrument"), 2))
 
-  test("an own loop must have another name than Skein's, and one that fits tables and files"):
+  test("a user's own loop must have a name that no loop of Skein has, and that fits tables and files"):
     for name <- Seq("stream", "", "My loop", "a" * 41) do
       intercept[IllegalArgumentException](OwnLoop(name, (team, stop) => OwnLoopSimulation.eager(team, stop)))
 

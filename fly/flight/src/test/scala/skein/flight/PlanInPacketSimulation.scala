@@ -97,7 +97,7 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
 
     def hover(): Future[Either[VehicleError, Boolean]] = Future.successful(Right(true))
 
-  test("a flight with vehicles that accept no plans is refused, with what was expected"):
+  test("a flight whose vehicles accept no plans is refused with a message that states what was expected"):
     val flight = settings(LatencyProfile.none)
     val result = VirtualTime
       .run(seed = 1): system =>

@@ -17,7 +17,7 @@ class ProgressBoardSuite extends munit.FunSuite:
     board.close()
     assertEquals(bytes.toString(UTF_8), "20 s of 20 s: a ended; b \n")
 
-  test("if time passes in steps, progress shows the simulator's time, every 10 s of the controller's"):
+  test("if time passes in steps, progress shows the simulator's time, every 10 s of the controller's time"):
     val bytes = ByteArrayOutputStream()
     val board = ProgressBoard(Vector("paused"), Span.ofSeconds(15), PrintStream(bytes, true, UTF_8))
     for s <- Seq(10, 14, 20, 30) do

@@ -97,7 +97,7 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
       folder
     )
 
-  test("a replay reports the first decision whose heading differs from the policy's, with both values"):
+  test("a replay reports the first decision whose heading is not the policy's, with both headings"):
     val recording = fly(settings, predictive).recording
     val forged    = recording.decisions(7)
     val heading   = Radians(forged.heading.value + 1e-12)

@@ -39,7 +39,7 @@ class SceneFlightSimulation extends munit.FunSuite, Unhurried:
 
   for loop <- Seq(LoopKind.Stream, LoopKind.Predictive) do
     test(
-      s"${loop.label}: scouts cross the forest by lidar alone, touch nothing, and replay to equal decisions"
+      s"${loop.label}: scouts cross the forest using only lidar, touch nothing, and replay to equal decisions"
     ):
       val crossing = settings(loop, Span.ofSeconds(45)).copy(scenario = Forest(vehicles = 2))
       val flown    = fly(crossing)

@@ -74,7 +74,7 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
       ))
       assert(clue(said.asScala.toSeq).head.contains(s"waits for --solver tcp://$at, 600 s at most: "))
 
-  test("when a solver is restarted in flight, vehicles hover, fly on, and the flight replays"):
+  test("if a solver is restarted in flight, vehicles hover, then fly on, and the flight replays"):
     val first  = Await.result(served(1, Address("127.0.0.1", 0)), 10.seconds)
     val at     = first.address
     val flight = SolvedFlight(

@@ -38,7 +38,8 @@ class VehicleNetworkSimulation extends munit.FunSuite, TemporaryFolders, Optimis
     assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     flown.recorder
 
-  /** Readings of others, by the controller that received them, and the readings they were sent for. */
+  /** Readings of other vehicles, with the controller that received them, and the readings they were sent for.
+    */
   private def messages(recording: Recording): Vector[(to: Int, sent: ReadingRow, received: ReadingRow)] =
     val names = recording.heading.vehicles.map(_.name)
     val asked = Reading.asked(recording).map(read => (read.vehicle, read.sequence) -> read).toMap
@@ -53,7 +54,9 @@ class VehicleNetworkSimulation extends munit.FunSuite, TemporaryFolders, Optimis
     recording.events.filter(_.kind == EventKind.MessagesLost).flatMap(_.count).sum
 
   for loop <- loops do
-    folder.test(s"${loop.label}: equal seeds give equal flights, others others, and a recording replays"):
+    folder.test(
+      s"${loop.label}: equal seeds give equal flights, different seeds do not, and a recording replays"
+    ):
       folder =>
         val flight = settings(loop, "range:60m,loss:10%/4,vpn", scenario = PaperDuel(pairs = 2))
         val flown  = fly(flight)
@@ -90,7 +93,7 @@ class VehicleNetworkSimulation extends munit.FunSuite, TemporaryFolders, Optimis
         decisions(fly(byMessages.copy(between = None)).recording)
       )
 
-  test("each controller's link has one trace, its own vehicle's"):
+  test("the link of each controller has one trace, that of its own vehicle"):
     val recording = fly(settings(LoopKind.Stream, "vpn", scenario = Surround())).recording
     assertEquals(RoundTripTrace.of(recording).size, recording.heading.vehicles.size)
 

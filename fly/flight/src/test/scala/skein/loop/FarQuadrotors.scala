@@ -10,8 +10,8 @@ import skein.units.*
 import skein.vehicle.{Guidance, Quadrotor, QuadrotorState, Setpoint}
 
 /** Quadrotors in AirSim's physics behind a link, without wire or server: each direction of each vehicle
-  * delays by half of a sampled round trip and keeps the order. Their clock is not the controller's. A move
-  * answers when it is replaced; none ends by itself.
+  * delays by half of a sampled round trip and keeps the order. Their clock differs from the controller's
+  * clock. A move is answered when it is replaced; none ends by itself.
   */
 final class FarQuadrotors(scenario: Fleet, link: LatencyProfile, seed: Long, clock: Clock)(using
     system: ActorSystem

@@ -68,7 +68,7 @@ class ForeseenSuite extends munit.FunSuite:
       foreseen.actions(0, view, starts.map(Foreseen.Mind(_, None)), now)
     )
 
-  test("if the others' policies are unknown, a plan does not depend on them"):
+  test("if the other vehicles' policies are unknown, a plan does not depend on them"):
     val stranger = Fleet(fleet.agents.updated(0, fleet.agents(0).copy(policy = Flee(3))))
     val blind    = predicted(
       seen

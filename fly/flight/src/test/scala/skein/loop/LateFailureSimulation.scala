@@ -10,8 +10,8 @@ import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** The last answers of a flight are received after its time is over: if they cannot be recorded, the flight
-  * has failed.
+/** The last answers of a flight are received after its time has elapsed: if they cannot be recorded, the
+  * flight has failed.
   */
 class LateFailureSimulation extends munit.FunSuite, Unhurried:
 

@@ -135,7 +135,7 @@ class PausedLoopSuite extends munit.FunSuite:
   private def readAt(ms: Double*): Vector[Stamped[Unit]] =
     ms.toVector.map(at => Stamped((), Instant.Epoch + Span.ofMillis(at), Instant.Epoch, Instant.Epoch))
 
-  test("a step with a wrong duration, or during whose readings time passed, is reported"):
+  test("a step is reported if its duration is wrong or time passed during its readings"):
     def drift(step: Long, before: Vector[Stamped[Unit]], read: Vector[Stamped[Unit]]) =
       PausedLoop.drift(step, before, read, Span.ofMillis(100))
     assertEquals(PausedLoop.newest(readAt(500, 503, 501)), Instant.Epoch + Span.ofMillis(503))

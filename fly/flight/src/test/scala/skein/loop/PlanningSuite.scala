@@ -169,7 +169,7 @@ class PlanningSuite extends munit.FunSuite:
     teamwork(team, policy, settings)
       .pose(Memory(0.25, decidedBefore.map(now - _), 7), view, now)
 
-  test("a team's vehicle cruises at the speed of the place at which its policy wants to be"):
+  test("a team's vehicle cruises at the speed of the point at which its policy wants to be"):
     for steps <- Seq(2, 10) do
       val posed = teamPart(Moving(), PlanSettings(horizonSteps = steps, step = Span.ofMillis(200)))
       assertEqualsDouble(posed.objective.cruiseSpeed, 3, 1e-12)
@@ -186,7 +186,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(teamPart(Moving(), PlanSettings(horizonSteps = 1)).objective.cruiseSpeed, 0.0)
 
   test(
-    "a team's plan keeps the widest separation and a metre more; no policy that avoids is suggested"
+    "a team's plan keeps a metre more than the widest separation; no policy that avoids is suggested"
   ):
     def separation(policy: Moving, settings: PlanSettings) =
       val posed = teamPart(policy, settings)
@@ -206,7 +206,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals((alone.limits.minSpeed, alone.limits.maxSpeed, alone.cruiseSpeed), (1.8, 1.8, 1.8))
     assertEquals(PlanSettings(kept = Vector(Kept.NoFaster(5))).speedMps(3), 3.0)
 
-  test("the altitude is a vehicle's own if floor and ceiling allow it, else a metre inside, or midway"):
+  test("a vehicle keeps its altitude if floor and ceiling allow it; else it flies a metre inside, or midway"):
     def flown(kept: Kept*) = PlanSettings(kept = kept.toVector).altitudeM(5)
     assertEquals(flown(), 5.0)
     assertEquals(flown(Kept.Above(4), Kept.Below(6)), 5.0)
@@ -225,7 +225,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(mostAtOnce(0.4), 1 / 0.4)
 
   test(
-    "vehicles of a team that do not plan are avoided only with a configured separation"
+    "vehicles of a team that do not plan are avoided only if a separation is configured"
   ):
     val mixed = Fleet(fleet.agents.zipWithIndex.map((agent, place) =>
       if place == pursuer then agent.copy(policy = Moving()) else agent.copy(policy = Together)
@@ -250,7 +250,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals((decision.action.speed, made.byPolicy), (MetresPerSecond(3), true))
 
   test(
-    "a plan is used if it saves a tenth of a metre against the policy's manoeuvre, else the policy's"
+    "a plan is used if it saves a tenth of a metre against the policy's manoeuvre; else the policy decides"
   ):
     val team                 = Fleet(fleet.agents.map(_.copy(policy = Moving())))
     val planning             = teamwork(team, Moving(), PlanSettings())

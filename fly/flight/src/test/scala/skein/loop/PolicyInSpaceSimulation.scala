@@ -90,7 +90,7 @@ class PolicyInSpaceSimulation extends munit.FunSuite, Unhurried:
     )
 
   test(
-    "as published, each view is decided on and then paced; else pacing is first, and all decisions are sent"
+    "as published, every view is decided on, then paced; else views are paced, and all decisions are sent"
   ):
     val published                    = LoopSettings().asPublished
     def flown(is: Boolean)           = fly(LoopKind.Stream, settings = published.copy(decideThenPace = is))

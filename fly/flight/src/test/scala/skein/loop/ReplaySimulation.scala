@@ -47,7 +47,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
       val east   = others.map(other => seen.eastM(other) - seen.eastMps(other)).sum
       (seen.along(math.atan2(east, north), 2), ())
 
-  /** A separate slot beside all others, moving north. */
+  /** A separate slot beside all other slots, moving north. */
   private object Slot extends Policy, Goal:
     def mostMps: Double                                             = 6
     def wanted(seen: Observation, aheadS: Double): (Double, Double) = (3 * aheadS, 8.0 * seen.self)

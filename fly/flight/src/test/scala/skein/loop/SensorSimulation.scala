@@ -15,7 +15,7 @@ import skein.vtime.VirtualTime
 /** Policies that read sensors, through every loop in virtual time. */
 class SensorSimulation extends munit.FunSuite, Optimised:
 
-  /** Climbs by its barometer alone, and hovers if that reading is too old. */
+  /** Climbs using only its barometer, and hovers if that reading is too old. */
   private final case class ByBarometer(topM: Double, oldest: Span) extends Policy:
     override def sensors: Set[String] = Set("barometer")
     type Memory = Unit
@@ -91,7 +91,9 @@ class SensorSimulation extends munit.FunSuite, Optimised:
     -recording.readings.filter(_.vehicle == vehicle).last.state.value.positionNed.z
 
   for kind <- LoopKind.values do
-    test(s"${kind.label}: a policy climbs by its sensor, and its recording replays to equal decisions"):
+    test(
+      s"${kind.label}: a policy climbs using its sensor, and a replay of its recording makes equal decisions"
+    ):
       val recording = fly(kind)
       assertEqualsDouble(lastAltitude(recording, "Evader"), 26, 0.5)
       assertEqualsDouble(lastAltitude(recording, "Pursuer"), 15, 0.5)

@@ -116,7 +116,7 @@ class SettingsSuite extends munit.FunSuite:
       assertEquals(mistake(settings), told)
       assertEquals(PlanSettings.parse(settings.text), None, told)
 
-  test("plans: a text with an unknown or missing value is no settings"):
+  test("plans: a text with an unknown or missing value is not a settings text"):
     val text = PlanSettings(slices = 7, separationM = 2.5).text
     assertEquals(PlanSettings.parse(text), Some(PlanSettings(slices = 7, separationM = 2.5)))
     for value <- text.split(' ') do assertEquals(PlanSettings.parse(text.replace(value, "x=1")), None, value)

@@ -70,7 +70,7 @@ class TeamViewSuite extends munit.FunSuite:
     assert(view.isNews(reading(0, 3, 50, 131, 160)), "a simulator that was started again")
 
   test(
-    "a late answer from before the simulator's restart is no news, and does not move the clocks' estimate"
+    "a late answer from before the simulator's restart is not news, and does not move the clocks' estimate"
   ):
     val next = reading(0, 3, 20, 200, 230)
     val view = TeamView.empty(2).withReading(later).withReading(next)
@@ -155,7 +155,7 @@ class TeamViewSuite extends munit.FunSuite:
     assertEquals((one.unanswered, one.entered), (1L, 0L))
 
   test(
-    "a forecast receives sent, replaced and failed commands; a move that ran to its end changes nothing"
+    "a forecast learns of sent, replaced and failed commands; a move that ran to its end changes nothing"
   ):
     import scala.util.{Failure, Success}
     val pursuer  = Decider(PaperDuel().fleet, 1)

@@ -10,7 +10,7 @@ class DistributionSuite extends munit.FunSuite:
     assertEqualsDouble(numbers.quantile(0.3), 300, 1e-9)
     assertEqualsDouble(numbers.mean, 500, 1e-9)
 
-  test("each quantile of one sample is that sample, and no samples give no distribution"):
+  test("each quantile of a single sample is that sample; without samples there is no distribution"):
     val one = Distribution.of(Seq(7.0)).get
     assertEquals((one.least, one.median, one.p99, one.most, one.sd), (7.0, 7.0, 7.0, 7.0, 0.0))
     assertEquals(Distribution.of(Seq.empty), None)

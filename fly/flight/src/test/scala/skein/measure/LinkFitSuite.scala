@@ -43,7 +43,7 @@ class LinkFitSuite extends munit.FunSuite:
     assertEquals(fit.correlatedS, None)
     assert(fit.text("file:x").matches("loss:[0-9.]+%,file:x"), fit.text("file:x"))
 
-  test("without losses, and with equal round trips, the profile is the distribution alone"):
+  test("without losses, and with equal round trips, the profile consists only of the distribution"):
     assertEquals(LinkFit.of(Seq(trace("constant:80ms", 50, 0.1))).text("constant:80ms"), "constant:80ms")
 
   test(

@@ -187,5 +187,5 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
     assert(refused(folder, "no model".getBytes).contains("expected an ONNX model: it is damaged"))
     assert(PolicyFile.read("nowhere.onnx").left.exists(_.contains("there is no such file")))
 
-  test("a policy that is no network cannot be written as ONNX"):
+  test("a policy that is not a network cannot be written as ONNX"):
     assert(OnnxPolicy.write(PaperPursuer(1), "pursuer").left.exists(_.contains("only networks")))

@@ -49,7 +49,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     val said = read(s"skein.fly {\n$text\n}").left.getOrElse("").linesIterator.toSeq
     assertEquals(said.map(_.replaceAll("^.*String: ", "")), expected)
 
-  test("a null, a list, a single value and settings in one another's places are reported, in a line each"):
+  test("a null, a list, a single value and settings in one another's places are reported, in one line each"):
     assertTold(
       "scenario = surround, surround { ring-m = null }",
       "2: skein.fly.surround.ring-m: expected a value, got null"
@@ -73,7 +73,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     )
     assertTold("only-policies = true", "2: skein.fly.only-policies: expected policies beside it, got none")
 
-  test("values of a wrong kind are reported in a line each, whatever reads them"):
+  test("values of a wrong kind are reported in one line each, whatever reads them"):
     assertTold("seed = many", "2: skein.fly.seed: expected a whole number, got 'many'")
     assertTold("seed = 1e30", "2: skein.fly.seed: expected a whole number, got '1.0E30'")
     assertTold(
@@ -101,7 +101,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       Right("plan: Pursuer plans; Evader flies by its own policy")
     )
 
-  test("knowledge of positions alone is refused if others' commands or policies are needed"):
+  test("knowledge that consists only of positions is refused if others' commands or policies are needed"):
     assertTold("knows = some", "2: skein.fly.knows: expected all or positions, got 'some'")
     assertTold(
       "knows = positions, loops = [plan]",
@@ -195,7 +195,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assert(read(s"skein.fly { deadline = 41 ms, $plans }").isRight)
     assert(read("skein.fly { period = 40 ms, loops = [plan], planning.deadline = 40 ms }").isRight)
 
-  test("flights have a name each, and differ in seed unless they differ in the policy alone"):
+  test("flights have a name each, and differ in seed unless they differ only in the policy"):
     val family = (name: String) => PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.parse(name).toOption.get)
     val flown  = FlySettings(
       List(LoopKind.Stream, LoopKind.Paused),
@@ -230,7 +230,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       val said = read(text).left.getOrElse("")
       assert(clue(said).contains("expected a duration with unit, such as 40s, got '40'"))
 
-  test("a scene is one that ships, a file, or else the scenario's"):
+  test("a scene is a bundled scene, a file, or else the scenario's scene"):
     assertEquals(read("").map(_.world.name), Right("empty"))
     assertEquals(read("skein.fly.scenario = forest").map(_.world.name), Right("forest"))
     assertEquals(read("skein.fly { scenario = forest, scene = street }").map(_.world.name), Right("street"))

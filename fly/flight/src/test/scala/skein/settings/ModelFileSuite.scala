@@ -77,7 +77,7 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(predictor.map(_.at(20)), Right(PlantModel(Late(0.75, 0.25))))
     assertEquals(VehicleChoice.parse(path, 20).map(_.response), Right(PlantResponse(Late(0.75, 0.25))))
 
-  test("a file has tables of the measured errors, and no others"):
+  test("a file has tables only of errors that were measured"):
     val both                = fit(late, 0.75, 0.25)
     def tables(fitted: Fit) =
       val written = ModelFile.render(late, Vector(fitted), ModelFile.Provenance(Vector(), Vector(), 1, "v"))
@@ -123,7 +123,7 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
         s"structure mine: expected another name of a parameter: '$key' is a key of model files"
       )
 
-  test("plans use a user's own plant if it is a formula; another one is refused before the flight"):
+  test("plans use a user's own plant if it is a formula; any other plant is refused before the flight"):
     val path = Files.writeString(temporaryFolder().resolve("model.conf"), text(late)).toString
     def read(loop: String, plant: ObservedPlant[?]) =
       val known = Structure("late", late.space, _ => plant)

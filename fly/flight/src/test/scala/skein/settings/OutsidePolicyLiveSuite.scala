@@ -25,7 +25,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
           case other              => throw other
 
   test(
-    "an answer is the share of the most that the pursuer turns, and values beyond are clipped"
+    "an answer is the fraction of the most that the pursuer turns, and values beyond are clipped"
   ):
     assertEquals(
       decided(Peer.number(0.5f), Peer.number(-7), Peer.number(1)),
@@ -73,7 +73,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
         )).getMessage.startsWith("the policy: "))
       assertEquals(peer.asked, 1)
 
-  test("an answer without a request is not taken for that to the next request"):
+  test("an answer without a request is not mistaken for the answer to the next request"):
     assertEquals(
       decided(Peer.number(0.5f) ++ Peer.number(-1), Peer.number(0), Peer.number(0)),
       Right(0.55) +: Seq.fill(2)(Left("the policy: expected one answer to a question, got more"))
@@ -103,7 +103,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
         Some(s"expected a policy behind the socket $path: it accepts nobody within 500 ms")
       )
 
-  test("an answer that is not complete in time is none, and there is no second question"):
+  test("an answer that is not complete in time counts as missing, and there is no second question"):
     for part <- Seq(Array.empty[Byte], Array[Byte](0, 0)) do
       Using.resource(Peer((_, _) => Some(part))): peer =>
         val policy = reached(OutsidePolicy.reach(peer.option, Span.ofMillis(30)))
@@ -112,7 +112,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
           assertEquals(reason, "the policy: expected an answer within 30 ms, got none")
         assert(peer.asked <= 1)
 
-  test("a question that is not read in time is not sent"):
+  test("a question that the process does not read in time fails"):
     val path = temporaryFolder().resolve("policy")
     Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
       listener.bind(UnixDomainSocketAddress.of(path)): Unit

@@ -19,7 +19,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(again, Right(policy))
       assertEquals(PolicyFile.parse(role, policy.text), Right(policy))
 
-  folder.test("a file's policy is its family's with the file's parameters"): folder =>
+  folder.test("a file's policy is the policy of its family with the file's parameters"): folder =>
     val policy = read(folder, "family = paper-pursuer\nparameters.turnRateRadPerS = 1.5").map(_.policy)
     assertEquals(policy, Right(PaperPursuer(1.5)))
 
@@ -51,7 +51,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
       ("no HOCON", "family = {", Seq("policy.conf"))
     )
   do
-    folder.test(s"$what is refused with its place and what was expected"): folder =>
+    folder.test(s"$what is refused with its position and what was expected"): folder =>
       val mistake = read(folder, text).left.getOrElse("accepted")
       for part <- expected do assert(mistake.contains(part), mistake)
 
@@ -64,7 +64,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
         Left(s"expected turnRateRadPerS=NUMBER after paper-pursuer, got 'paper-pursuer$wrong'")
       )
 
-  test("a policy is used by all agents of its role, and by no others"):
+  test("a policy is used by exactly the agents of its role"):
     val fleet  = PaperDuel().fleet
     val policy = PolicyFile(Role.Pursuer, PolicyFamily.paperPursuer, Vector(1.5))
     assertEquals(

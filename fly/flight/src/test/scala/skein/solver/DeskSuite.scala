@@ -32,7 +32,7 @@ class DeskSuite extends munit.FunSuite:
     val free = more.done(asked(0), Some("a"))
     assertEquals(free.taken(0)._2.map(_.question.number), Some(2L))
 
-  test("a request continues from the answer that was used, not from the last one given"):
+  test("a request continues from the answer that was used, not from the last answer given"):
     val desk = Desk.of(2).done(asked(0), Some("a")).done(asked(1, Some((1, 0))), Some("b"))
     assertEquals(desk.memory(asked(2, Some((1, 0))), solver = 1), Some("a"))
     assertEquals(desk.memory(asked(2, Some((1, 1))), solver = 1), Some("b"))

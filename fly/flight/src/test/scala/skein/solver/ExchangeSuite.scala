@@ -58,7 +58,7 @@ class ExchangeSuite extends munit.FunSuite:
     val (late, _) = two.asked(0, at(300), at(400))._1.heard(answer(2), at(900))
     assertEquals(late.delay, Span.ofMillis(20))
 
-  test("time meant for searching is no part of the delay"):
+  test("time meant for searching is not part of the delay"):
     val (first, _)  = asking().asked(0, at(0), at(0) + within, searching = Span.ofMillis(60))
     val (one, _)    = first.heard(answer(0), at(68))
     val (second, _) = one.asked(1, at(100), at(100) + within)

@@ -102,7 +102,9 @@ class SolverDeskSuite extends munit.FunSuite:
       assertEquals(trial.ask(flights.last, 1)._2, Vector(SolverMessage.Unknown(flights.last)))
       assert(trial.ask(flights.head, 1)._2.head.isInstanceOf[SolverMessage.Tell])
 
-  test("as many flights are prepared simultaneously as may fly, each once; a further one repeats its hello"):
+  test(
+    "as many flights as may run are prepared simultaneously, each once; a further flight repeats its hello"
+  ):
     val workers = Held()
     on(workers): trial =>
       val flights = 1L to SolverDesk.MostFlights

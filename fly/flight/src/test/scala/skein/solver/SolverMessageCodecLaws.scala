@@ -186,7 +186,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
       SolverMessageCodec.message(bytes).isLeft || bytes.length > 9
     )
 
-  test("a mistake states what was expected and what was received"):
+  test("an error message states what was expected and what was received"):
     val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2))
     assertEquals(
       SolverMessageCodec.message(welcome.updated(0, 9.toByte)),

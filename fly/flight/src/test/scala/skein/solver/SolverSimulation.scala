@@ -56,7 +56,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       ("they take long, and after 3 s it flies", 1000, (_, _) => Seq(Span.ofMillis(100)), 15 to 100)
     )
   do
-    test(s"a link is rehearsed by greetings before the first request, and by none later: $name"):
+    test(s"a client rehearses a link by greetings before its first request, and sends none after it: $name"):
       var sent  = Vector.empty[Boolean]
       val trial = SolverTrial.fly(fate = fate, rehearsals = rehearsals)(hand =>
         hand.at(4)(hand.breakLink("cut"))
@@ -156,7 +156,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       assert(trial.recording.solved.size > 30, s"seed $seed: ${trial.counts}")
 
   test(
-    "a policy with a memory continues from the answer that was used, and begins anew after a solver's restart"
+    "a policy with a memory continues from the answer that was used, and restarts after a solver's restart"
   ):
     val counting = SolverSimulation.Counting
     val team     =
@@ -194,7 +194,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     assert(trial.byFallback.count(_._1 == "Pursuer") > 10, trial.byFallback)
     assert(trial.events(EventKind.SolverRestarted).exists(_.vehicle.contains("Pursuer")))
 
-  test("a team is planned by one request, and an answer decides for all of it or none"):
+  test("one request plans a whole team, and an answer decides either for all of its vehicles or for none"):
     val team  = Crossing(vehicles = 4).fleet
     val trial = checked(
       SolverTrial.fly(kind = LoopKind.Plan, fleet = team, seconds = 10): hand =>

@@ -70,7 +70,7 @@ class TcpLinkSuite extends munit.FunSuite:
     assertEquals(trial.news, Vector(LinkNews.Refused(mistrusted.getMessage)))
     assertEquals(trial.tried, 2)
 
-  test("a handshake that fails once, or after a message, is no refusal"):
+  test("a handshake that fails only once, or after a message, is not reported as a refusal"):
     val no   = failing(mistrusted)
     val said = open(
       Source(Seq(framed, ByteString.empty))

@@ -3,7 +3,8 @@ package skein.kafka
 import scala.concurrent.Future
 import skein.solver.SolverDesk
 
-/** A solver behind a Kafka broker. One per prefix: a second one would answer every request again.
+/** A solver behind a Kafka broker. Only one may run for each prefix: a second one would answer every request
+  * again.
   *
   * @param told receives a line for the user: why the broker cannot be used yet, or what could not be written
   */

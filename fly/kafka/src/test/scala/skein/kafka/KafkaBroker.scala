@@ -112,7 +112,7 @@ object KafkaBroker:
       .run()
 
   /** Minimal settings of one node: every internal topic has one partition, and starts without waiting for
-    * others.
+    * other nodes.
     */
   private def configuration(
       folder: Path,

@@ -4,8 +4,8 @@ import org.apache.pekko.util.ByteString
 import scala.collection.mutable
 import skein.units.Instant
 
-/** Analyses the MessagePack-RPC of AirSim's clients: calls are commands, readings and all else by their
-  * names.
+/** Analyses the MessagePack-RPC of AirSim's clients. A call's name determines whether it is a command, a
+  * reading or anything else.
   */
 final class AirSimAnalysis extends Analysis[Observed]:
   private val account       = LoopAccount()

@@ -24,7 +24,7 @@ trait Analysis[A]:
 
   def progress: Progress
 
-  /** Commands since the last call, by vehicle. */
+  /** Commands since the last call, for each vehicle. */
   def takeNew(): Vector[NewCommands]
 
   def observed: A

@@ -31,7 +31,7 @@ object Diagnosis:
     */
   private val Slow = 0.75
 
-  /** A physics step of AirSim: readings of one instant may differ by this. */
+  /** A physics step of AirSim, by which the time stamps of simultaneous readings may differ. */
   private val LeastSkewMs = 3.0
 
   private val RateWithin = 0.02

@@ -208,7 +208,7 @@ final class LoopAccount:
   def progress: Progress =
     VehicleAccount.progress(begunAt.fold(Span.Zero)(lastAt.since), vehicles.all.map(_.account))
 
-  /** Commands since the last call, by vehicle. */
+  /** Commands since the last call, for each vehicle. */
   def takeNew(): Vector[NewCommands] = vehicles.all.flatMap(_.account.takeNew()).toVector
 
   /** The complete observations so far; sorts every sample. */

@@ -12,7 +12,7 @@ import skein.units.Instant
   * Readings are LOCAL_POSITION_NED, GLOBAL_POSITION_INT and ODOMETRY; commands are
   * SET_POSITION_TARGET_LOCAL_NED, SET_POSITION_TARGET_GLOBAL_INT and SET_ATTITUDE_TARGET. A command is
   * assumed to be based on the newest reading of each vehicle that passed before it ([[TopicAccount]]).
-  * Readings are stamped by the vehicle's clock since boot, which the TIMESYNCs between the two sides relate
+  * Readings are stamped on the vehicle's clock since boot, which the TIMESYNCs between the two sides relate
   * to ours.
   *
   * Memory: [[MavlinkLoop.MostConnections]] connections, [[MavlinkLoop.MostPending]] unanswered TIMESYNCs, and
@@ -31,7 +31,7 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
   private val heeded  = if readings.isEmpty then Positions else readings
   private val known   = mutable.LinkedHashSet.empty[Int]
 
-  /** Sides of connections that sent a command: the programs'. */
+  /** Sides of connections that sent a command, which are the program's sides. */
   private val programs = mutable.HashSet.empty[Side]
 
   private var counts = ReaderCounts()

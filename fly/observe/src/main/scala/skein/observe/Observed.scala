@@ -124,7 +124,7 @@ final case class ObservedMethod(
 
 /** The simulator's clock by its time stamps.
   *
-  * @param rate its seconds in a second of the observer's
+  * @param rate its seconds in a second of the observer's clock
   * @param backwards number of times it ran back
   * @param stoodStill total time, except while it was paused by a client
   */

@@ -32,7 +32,7 @@ final class ObservingProxy[A] private (
   /** Present progress; may be called repeatedly while it observes. */
   def progress: Progress = looking.progress
 
-  /** Commands since the last call, by vehicle. */
+  /** Commands since the last call, for each vehicle. */
   def takeNew(): Vector[NewCommands] = looking.takeNew()
 
   /** The observations so far; later messages are analysed after it. */

@@ -112,7 +112,7 @@ final class TopicAccount:
 
   private def lasted: Span = begunAt.fold(Span.Zero)(lastAt.since)
 
-  /** Commands since the last call, by vehicle. */
+  /** Commands since the last call, for each vehicle. */
   def takeNew(): Vector[NewCommands] = vehicles.all.flatMap(_.account.takeNew()).toVector
 
   /** The complete observations so far; sorts every sample. */
@@ -163,14 +163,14 @@ object TopicAccount:
         isFirst = false
         val before = fastest
         fastest = fastest.map(_.updated(stamped, at))
-        // The clock of a restarted vehicle starts anew.
+        // The clock of a restarted vehicle starts again.
         if before.exists(one => fastest.exists(_.offset > one.offset + FastestMessage.Restart)) then
           newest = None
           stamps.clear()
           clock = None
         stamps(stamped) = reading
         if stamps.size > MostCauses then stamps -= stamps.head._1
-      // A message that overtook a newer one is no newer reading.
+      // A message that overtook a newer one is not a newer reading.
       if newest.flatMap(_.stamp).forall(before => stamp.forall(_ >= before)) then newest = Some(reading)
 
     def readingOf(stamp: Instant): Option[Reading] = stamps.get(stamp)

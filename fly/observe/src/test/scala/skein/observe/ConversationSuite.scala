@@ -53,7 +53,7 @@ class ConversationSuite extends munit.FunSuite:
       Vector(image.size.toLong, answered.size.toLong)
     )
 
-  test("bytes that are no messages are reported once, and the rest is ignored"):
+  test("bytes that are not messages are reported once, and the rest is ignored"):
     for seed <- 1L to 500 do
       val random = SplittableRandom(seed)
       val noise  = ByteString(Array.fill(1 + random.nextInt(2_000))(random.nextInt.toByte))

@@ -48,7 +48,7 @@ class LoopAccountSuite extends munit.FunSuite:
     def found: Set[String]       = Diagnosis.of(observed).map(_.name).toSet
     def vehicle(name: String)    = observed.vehicles.find(_.name == name).get
 
-  test("to hover, which is answered before the end of the move that it replaces, has overtaken nothing"):
+  test("a hover that is answered before the end of the move that it replaces has overtaken nothing"):
     val program = Program()
     val moved   = program.move("A", 0)
     val hovers  = program.call("hover", "A", 100)
@@ -167,7 +167,7 @@ class LoopAccountSuite extends munit.FunSuite:
     assert(loop(waits = true).found("waits for each move"))
     assert(!loop(waits = false).found("waits for each move"))
 
-  test("small calls that are slow during an image, and else quick, mean that images fill the link"):
+  test("small calls that are slow only during an image show that images fill the link"):
     val program = Program()
     for tick <- 0 until 40 do
       val ms = tick * 200.0
@@ -233,7 +233,7 @@ class LoopAccountSuite extends munit.FunSuite:
     assert(slow("reset"))
     assert(!slow("simPause"))
 
-  test("an object counts as others' data for as long as it is read, and no longer"):
+  test("an object counts as other vehicles' data only while it is read"):
     def others(reads: Int => Boolean) =
       val program = Program()
       for tick <- 0 until 100 do

@@ -17,7 +17,7 @@ import skein.units.*
 import skein.vtime.VirtualTime
 
 /** A loop of ours flies over MAVLink through the observer, in virtual time; the ages that the observer
-  * reports are compared with those by the simulator's own clock.
+  * reports are compared with those on the simulator's own clock.
   */
 class MavlinkLoopSimulation extends munit.FunSuite, Unhurried:
   private val settings = FlySettings(
@@ -90,9 +90,11 @@ class MavlinkLoopSimulation extends munit.FunSuite, Unhurried:
     .value
 
   for profile <- Seq(LatencyProfile.direct, LatencyProfile.vpn) do
-    test(s"over ${profile.name} the ages that the observer reports are the simulator's, within their bounds"):
+    test(
+      s"over ${profile.name}, observed ages equal the simulator's ages within their bounds"
+    ):
       val (observed, ages) = flown(profile)
-      // The first connection brings the vehicles to their starts; the flight's is the last.
+      // The first connection brings the vehicles to their starts; the last is the connection of the flight.
       val compared = observed.log.takeRight(ages.size).zip(ages)
       assert(compared.size > 400, compared.size)
       val errorsMs =

@@ -114,7 +114,7 @@ class MavlinkLoopSuite extends munit.FunSuite:
     assertEquals(here.loop.observed.log.map(_.vehicle), Vector("system 1", "system 2"))
     assertEquals(here.loop.observed.log.map(_.othersAgeMs.map(_.round)), Vector(Some(20L), Some(40L)))
 
-  test("the chosen messages count as readings, others do not"):
+  test("only the chosen messages count as readings"):
     val here = Conversation(readings = Set("ATTITUDE"))
     here.position(1, 0, 10)
     here.send(1, 20)(Attitude(10, 0, 0, 0, 0, 0, 0))

@@ -17,7 +17,7 @@ import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
 /** Users' scripts with AirSim's own Python client, each with a fault in its timing, run through the observer.
-  * The diagnosis must state the fault, and the ages must be those that the script itself knows by the
+  * The diagnosis must state the fault, and the ages must be those that the script itself knows on the
   * simulator's clock.
   */
 class ObservedScriptsLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:

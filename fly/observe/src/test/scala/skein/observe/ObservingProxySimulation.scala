@@ -25,7 +25,7 @@ class ObservingProxySimulation extends munit.FunSuite, Unhurried:
 
   /** The result of an observed flight.
     *
-    * @param ages ages of the evader's data at each of its commands, ms, by the simulator's own clock
+    * @param ages ages of the evader's data at each of its commands, ms, on the simulator's own clock
     */
   private final case class Flown(observed: Observed, ages: Seq[Double])
 

@@ -39,7 +39,7 @@ class TopicAccountSuite extends munit.FunSuite:
     assertEquals(graph.ages, Vector(Some(40.0), Some(40.0)))
     assertEquals(graph.observed.caused, 1L)
 
-  test("an overtaken message is no newer reading, and is counted"):
+  test("an overtaken message is not a newer reading, and is counted"):
     val graph = Graph()
     graph.reading("a", 20, 30)
     graph.reading("a", 10, 40)
@@ -47,7 +47,7 @@ class TopicAccountSuite extends munit.FunSuite:
     assertEquals(graph.ages, Vector(Some(30.0)))
     assertEquals(graph.observed.topics.head.backwards, 1L)
 
-  test("the age of others is that of the oldest of their newest readings"):
+  test("the age of the other vehicles' data is that of the oldest of their newest readings"):
     val graph = Graph()
     graph.reading("a", 10, 20)
     graph.reading("b", 5, 21)

@@ -21,7 +21,7 @@ final class BagLoop(readings: Set[String], commands: Set[String]):
 
   /** Reads a bag: its folder, or an MCAP file.
     *
-    * @return Left says in a line why it is no bag, or which topic is missing
+    * @return Left says in a line why it is not a bag, or which topic is missing
     */
   def observed(bag: Path): Either[String, ObservedTopics] =
     val loop = TopicLoop(readings, commands)

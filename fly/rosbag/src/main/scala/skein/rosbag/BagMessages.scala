@@ -25,8 +25,8 @@ final case class BagMessage(topic: String, kind: MessageType[?], at: Instant, by
   *     with its frame in `/tf`: images and scans.
   *
   * Headers are stamped with the time of sampling, converted to the controller's clock by the offset that was
-  * known at that row. Frames are those of REP 103 and 105. Bytes that are no letter, digit or `_` in a name
-  * become `_`.
+  * known at that row. Frames are those of REP 103 and 105. Bytes that are not letters, digits or `_` in a
+  * name become `_`.
   */
 final class BagMessages(rows: Vector[Record]):
   private var offset  = McapRecording.firstOffset(rows)

@@ -41,7 +41,7 @@ private[rosbag] final class GraphClock:
   def step: Option[Span] = recent.lastOption.map(last => last.time.since(begun) / steps.max(1))
 
   /** The simulated time of an arrival, or `at` itself if there is no simulated time. It never runs back,
-    * except where the time begins anew.
+    * except where the time starts again.
     */
   def timeOf(at: Instant): Instant =
     for last <- recent.lastOption; usual <- step do
@@ -62,7 +62,7 @@ private object GraphClock:
 
   val MostRecent: Int = 32
 
-  /** Maximum lateness of a message: best effort may deliver one after a newer one. A simulation that begins
-    * anew goes back further.
+  /** Maximum lateness of a message: best effort may deliver one after a newer one. A simulation that starts
+    * again goes back further.
     */
   val MostLate: Span = Span.ofSeconds(1)

@@ -10,7 +10,7 @@ import skein.units.{Clock, Instant}
   * appear. It publishes nothing. Methods may be called from any thread.
   *
   * Memory: [[GraphLoop.MostTopics]] topics, the beginnings of 16,384 messages, and that of
-  * [[skein.observe.TopicAccount]]. What exceeds it is counted in the [[remarks]].
+  * [[skein.observe.TopicAccount]]. What exceeds these limits is counted in the [[remarks]].
   *
   * @param readings topics with vehicles' readings; without any, those of poses whose name does not suggest
   *   commands
@@ -49,12 +49,12 @@ final class GraphLoop private[rosbag] (readings: Set[String], commands: Set[Stri
 
   def progress: Progress = synchronized(loop.progress)
 
-  /** Commands since the last call, by vehicle. */
+  /** Commands since the last call, for each vehicle. */
   def takeNew(): Vector[NewCommands] = synchronized(loop.takeNew())
 
   def observed: ObservedTopics = synchronized(loop.observed)
 
-  /** Omissions, in a line each: topics that were chosen and did not appear, those that could not be
+  /** Omissions, in one line each: topics that were chosen and did not appear, those that could not be
     * subscribed to or were too many, and messages that were refused or lost.
     */
   def remarks: Vector[String] = synchronized:

@@ -11,7 +11,7 @@ class GraphClockSuite extends munit.FunSuite:
     for tick <- 0 to 50 do clock.add(at(5_000 + 20.0 * tick), at(900_000 + 20 / speed * tick)): Unit
     clock
 
-  test("without messages, times are those of arrival"):
+  test("without clock messages, times are arrival times"):
     assertEquals(GraphClock().timeOf(at(7)), at(7))
     assertEquals(GraphClock().step, None)
 
@@ -34,7 +34,7 @@ class GraphClockSuite extends munit.FunSuite:
     assertEquals(stopped, stopped.sorted)
 
   test(
-    "time begins with the first message, and anew if it goes back by over a second; a late message is ignored"
+    "time starts with the first message, and restarts if set back by over a second; late messages are ignored"
   ):
     val clock = GraphClock()
     assert(clock.add(at(5_000), at(0)))

@@ -74,7 +74,7 @@ class RosBagSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
       def vehicles(bag: Path) = BagLoop(Set.empty, Set.empty).observed(bag).map(_.vehicles)
       assertEquals(vehicles(folder), vehicles(made))
 
-  folder.test("a missing topic, SQLite, and a file that is no bag are reported in a line"): folder =>
+  folder.test("a missing topic, SQLite, and a file that is not a bag are reported in a line"): folder =>
     def refused(bag: Path, topic: Option[String] = None) =
       BagLoop(topic.toSet, Set.empty).observed(bag).fold(identity, _ => "")
     assert(refused(made, Some("/x/odom")).startsWith("expected the topic /x/odom in "))

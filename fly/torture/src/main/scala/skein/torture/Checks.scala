@@ -9,7 +9,7 @@ import skein.units.Decimals.fixed
 /** Checks a flight by its [[FlightTrace]], observed from outside. */
 object Checks:
 
-  /** All violations of a flight's guarantees, a line each. */
+  /** All violations of a flight's guarantees, one line each. */
   def violations(seen: FlightTrace): Vector[String] =
     Vector(
       overtaken(seen),

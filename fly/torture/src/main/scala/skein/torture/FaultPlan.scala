@@ -81,8 +81,8 @@ final case class FaultPlan(
   * @param late an answer is held back for up to `lateBy`, and others overtake it
   * @param doubled an answer arrives twice
   * @param nonsense an answer's result is of another type
-  * @param stray a message is added that is no answer, or the answer to no call
-  * @param garbage bytes are added that are no MessagePack
+  * @param stray a message is added that is not an answer, or the answer to no call
+  * @param garbage bytes are added that are not MessagePack
   * @param refused a move is requested by a method name that the simulator does not know
   * @param lost an answer never arrives, though its connection lives
   */
@@ -107,7 +107,7 @@ final case class Restart(at: Span, lasts: Span, clockJump: Span)
 enum Disk:
   case Sound
 
-  /** It writes nothing for a while; meanwhile rows must fit into the recorder's queue. */
+  /** The disk accepts nothing for a while; meanwhile the rows must fit into the recorder's queue. */
   case Blocks(at: Span, lasts: Span, capacity: Int)
 
   case Fails(at: Span)

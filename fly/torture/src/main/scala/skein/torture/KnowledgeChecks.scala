@@ -60,7 +60,7 @@ private[torture] object KnowledgeChecks:
           s"used reading ${used.sequence} of ${used.vehicle} after the newer ${reading.sequence}"
         )
 
-  /** A decision on readings that belong together must be made when the last of them is received. */
+  /** A decision on a group of readings must be made when the last of them is received. */
   private def notAtOnce(seen: FlightTrace, told: Map[String, Vector[ReportedState]]): Vector[String] =
     val moments = told(seen.vehicles.last).map(_.state.receivedAt).toSet
     seen.recording.decisions
@@ -188,5 +188,5 @@ private[torture] object KnowledgeChecks:
   /** Time after which an answer has timed out, and its view is joined without it. */
   private val Gone = Span.ofMillis(700)
 
-  /** A clock jump beyond the longest round trip contradicts what was known before. */
+  /** A clock jump longer than the longest round trip contradicts earlier readings. */
   private val Noticed = Span.ofSeconds(1)

@@ -8,10 +8,10 @@ import skein.port.{Sensor, SteppedTime, VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** A move sent by the loop. A move that is no velocity is identified only by its index in the sequence of
+/** A move sent by the loop. A move that is not a velocity is identified only by its index in the sequence of
   * moves.
   *
-  * @param north north component, m/s; 0 if the move is no velocity
+  * @param north north component, m/s; 0 if the move is not a velocity
   */
 final case class Sending(at: Instant, north: Float, east: Float)
 

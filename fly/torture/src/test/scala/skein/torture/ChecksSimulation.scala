@@ -59,7 +59,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     def agents: Vector[Agent] =
       Vector(Agent("Scout", Role.Traveller, MetresPerSecond(3), Vector3(0, 0, -20), Radians(0), Still))
 
-  test("the checks distinguish commands that are no velocities by their order alone"):
+  test("commands that are not velocities are distinguished only by their order"):
     val seen = undisturbed(LoopKind.Stream, Patrol())
     assertEquals(Checks.violations(seen), Vector.empty)
     assert(
@@ -199,7 +199,8 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       found(short.copy(steps = few, period = Span.ofMillis(10))).contains("are many for this flight"),
       "one step is 10 ms"
     )
-    // As published every vehicle decides at every reading of any: 340 rows a second for each of two, not 300.
+    // As published every vehicle decides at every reading of any: 340 rows per second for each of two, not
+    // 300.
     val rows   = Recorded.rows(clean.recording)
     val flown  = Span.ofSeconds(rows / (2 * 325.0) - 1)
     val dense  = clean.copy(endedAt = clean.startedAt + flown)
@@ -227,7 +228,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(!found(paused).contains("no command came within"))
 
   test(
-    "the checks require control from three seconds after the faults until the flight's time is over"
+    "the checks require control from three seconds after the faults until the flight's time has elapsed"
   ):
     val due    = clean.calmFrom + FaultPlan.ResumesWithin
     val silent = clean.copy(arrivals =

@@ -143,7 +143,7 @@ class FaultPlanSuite extends munit.FunSuite:
       assertEquals((flown(loop, 3), flown(loop, 4)), (loop, LoopKind.Stream))
     assertEquals(flown(LoopKind.Predictive, 10), LoopKind.Predictive)
 
-  test("a line for people lists all faults of a plan, and nothing else"):
+  test("a line for people lists exactly the faults of a plan"):
     val calm = faultPlans.head.copy(
       loop = LoopKind.Stream,
       scenario = PaperDuel(2),

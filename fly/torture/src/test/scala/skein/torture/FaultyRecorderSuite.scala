@@ -43,7 +43,7 @@ class FaultyRecorderSuite extends munit.FunSuite:
     assembly.offer(500, 4)
     assertEquals((assembly.memory.records.size, assembly.recorder.offered.size), (5, 5))
 
-  test("a full disk keeps nothing from then on, except for the flight's end"):
+  test("once the disk is full, nothing more is kept except the flight's end"):
     val assembly = Assembly(Disk.Fails(Span.ofMillis(100)))
     assembly.offer(99, 2)
     assertEquals(assembly.failure, None)

@@ -50,7 +50,7 @@ class TortureSimulation extends munit.FunSuite, Unhurried:
     assertEquals(Checks.violations(seen), Vector.empty, faultPlan.toString)
 
   test(
-    "late, lost, wrong and unrecognised images are each counted, and all others are searched"
+    "late, lost, wrong and unrecognised images are counted separately, and all other images are searched"
   ):
     val plans = Iterator.from(1).map(seed => FaultPlan.of(seed, duration)).filter(_.looks).take(6).toVector
     val seen  = plans.map(TortureFlight.fly)

@@ -33,7 +33,7 @@ final class LoopOpponentAgents extends LaneAgents implements TeamMember {
   private final LaneObservation observation = new LaneObservation(elapsedS);
   private final Directions known = new Directions(WORLDS);
 
-  /** The camera through which alone the vehicle knows its opponent; null if it reads the opponent. */
+  /** The camera that is the vehicle's only source about its opponent; null if it reads the opponent. */
   private LoopEye eye;
 
   /** @param effort receives the sum of the changes of the decided headings in each world, rad */

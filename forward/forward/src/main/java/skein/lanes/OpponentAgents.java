@@ -19,12 +19,12 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
   private final int self;
   private final LaneObservation observation;
 
-  /** The camera through which alone the vehicle knows its opponent; null if it reads the opponent. */
+  /** The camera that is the vehicle's only source about its opponent; null if it reads the opponent. */
   private final TimetableEye eye;
 
   /** @param self the vehicle's index, 0 or 1
    * @param effort receives the sums of the heading's changes
-   * @param eye the camera through which alone it knows its opponent; null if it reads the opponent
+   * @param eye the camera that is its only source about its opponent; null if it reads the opponent
    */
   OpponentAgents(
       int self,

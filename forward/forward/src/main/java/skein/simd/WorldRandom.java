@@ -1,7 +1,7 @@
 package skein.simd;
 
 /** Random numbers without state: the number at an index of a world's sequence is a hash of the world's key
- * and the index. It depends on seed, candidate and episode alone, and not on order, batch or number of
+ * and the index. It depends only on seed, candidate and episode, and not on order, batch or number of
  * threads.
  *
  * <p>The hash is the two-round 32-bit mixer {@code lowbias32} (Chris Wellons, public domain; bias 0.17). It

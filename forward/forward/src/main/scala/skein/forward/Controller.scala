@@ -222,7 +222,7 @@ private[skein] final class Controller(
       observation.x(vehicle) = kinematics.positionNed.x; observation.y(vehicle) = kinematics.positionNed.y
       observation.vx(vehicle) = kinematics.velocityNed.x; observation.vy(vehicle) = kinematics.velocityNed.y
 
-  /** Records a decision as sent without any message. */
+  /** Records a decision as sent, although no message was sent. */
   def sentNow(): Unit =
     sent = decided
     sentNumber = made

@@ -29,7 +29,7 @@ object Delays:
 
   /** The line of a request.
     *
-    * @param asker the vehicle whose controller requests (`Futures`); 0 if one controller requests for all
+    * @param asker the vehicle whose controller sends the requests (`Futures`); 0 if one controller sends all
     */
   def question(asker: Int, vehicle: Int): Int =
     Lines * (asker / 2 * MostPairs + vehicle / 2) + 4 * (asker % 2) + 2 * (vehicle % 2)
@@ -56,8 +56,8 @@ object Delays:
 
 /** Recorded delays of one flight, used in every simulated world. A message without a record never arrives.
   *
-  * @param delaysNs delays, ns, by vehicle and kind (request, answer, command, acknowledgement), then by
-  *   message; [[RecordedDelays.Lost]] if the message did not arrive
+  * @param delaysNs delays, ns, indexed by vehicle and kind (request, answer, command, acknowledgement), then
+  *   by message; [[RecordedDelays.Lost]] if the message did not arrive
   */
 final class RecordedDelays(delaysNs: Vector[Vector[Array[Long]]]) extends Delays:
   import RecordedDelays.Lost

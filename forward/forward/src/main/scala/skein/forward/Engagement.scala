@@ -7,7 +7,7 @@ import skein.vehicle.VehicleKind
 
 /** The vehicles of a rollout: pursuers and evaders, from one against one up to M against N, or a team without
   * sides. Depending on its policy, a vehicle considers either the rival that its assignment has for it at
-  * that moment, or all others. A captured vehicle continues to fly.
+  * that moment, or all other vehicles. A captured vehicle continues to fly.
   *
   * @param roles the agents' roles, in the order in which a loop reads the agents
   * @param isOver whether the engagement ends before its duration; evaluated at every decision
@@ -46,7 +46,7 @@ final case class Engagement(
   /** Replaces the policy of all agents of a role. */
   def flownBy(role: Role, policy: Policy): Engagement = changed(role)(_.copy(policy = policy))
 
-  /** Lets all agents of a role know their opponents by a camera alone; without one, by readings. */
+  /** Lets all agents of a role know their opponents only through a camera; without one, by readings. */
   def seeing(role: Role, eye: Option[SensorModel]): Engagement = changed(role)(_.copy(eye = eye))
 
   private def changed(role: Role)(change: RolloutAgent => RolloutAgent) =

@@ -1,7 +1,7 @@
 package skein.forward
 
 /** A bounded queue of events in the order of their times, ns. Events of equal times keep the order of
-  * insertion, except those added by [[addLast]]. The meaning of an event, a `Long`, is the caller's.
+  * insertion, except those added by [[addLast]]. The caller defines the meaning of an event, a `Long`.
   * Allocates only when it grows.
   *
   * @throws IllegalStateException from `add` and `addLast` if the queue is full

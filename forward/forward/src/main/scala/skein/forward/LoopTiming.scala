@@ -5,8 +5,8 @@ import skein.units.Span
 import skein.vehicle.{QuadrotorModel, VehicleModel}
 
 /** The timing of a control loop as data. It determines when an observation is taken, how old it is at the
-  * decision, when the command takes effect, and which messages replace others. [[Rollout]] derives its events
-  * from it; the kernels derive equal events with SIMD.
+  * decision, when the command takes effect, and which messages replace earlier ones. [[Rollout]] derives its
+  * events from it; the kernels derive equal events with SIMD.
   *
   * '''What all loops share''' (except `Paused`, in which nothing takes time):
   *   - A request, its answer, a command and the command's answer take a one-way delay each ([[Delays]]). A

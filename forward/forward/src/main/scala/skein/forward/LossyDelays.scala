@@ -52,7 +52,7 @@ final class LossyDelays private (
     val bits = WorldRandom.bits(Delays.keyOf(worldKey, line), step * Delays.Lines + line % Delays.Lines)
     base.delayNs(worldKey, line, step, number, sentAtNs) + waitNs(lossTimes, bits, line, sentAtNs)
 
-  /** The stretches of time in which one world's link loses everything. */
+  /** The intervals in which one world's link loses everything. */
   private[skein] def times(worldKey: Int): LossTimes = LossTimes(
     worldKey,
     Vector(BurstsToServer, BurstsToClient).map(line =>
@@ -134,8 +134,8 @@ private[skein] final class LossTimes(
 ):
   private val all = bursts.map(own => (own ++ outages).toArray)
 
-  /** Begin and end of the loss-free time that [[isLost]] found last, ns; if everything was lost, the end is
-    * not after the requested time.
+  /** Start and end of the loss-free interval that [[isLost]] found last, ns; if everything was lost, the end
+    * is not after the requested time.
     */
   var calmFromNs, calmUntilNs = 0L
 

@@ -2,7 +2,7 @@ package skein.forward
 
 import skein.units.{Span, Vector3}
 
-/** A vehicle's knowledge of its opponent from another source than readings. */
+/** A vehicle's knowledge of its opponent from a source other than readings. */
 private[skein] trait OpponentView:
   /** The estimate of the opponent.
     *

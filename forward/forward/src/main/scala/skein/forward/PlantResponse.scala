@@ -4,9 +4,9 @@ import skein.policy.Action
 import skein.signal.Kinematics
 import skein.vehicle.{ConstantVelocity, ObservedPlant, Plant, PlantFlight, PlantModel, VehicleModel}
 
-/** Vehicles that move by a [[skein.vehicle.Plant]]. Commands may take effect between steps; the simulation is
-  * exact if the plant's step is. If the plant is a [[skein.vehicle.ObservedPlant]], the loop `predictive`
-  * predicts by it, else by constant velocity.
+/** Vehicles that move according to a [[skein.vehicle.Plant]]. Commands may take effect between steps; the
+  * simulation is exact if the plant's step is. If the plant is a [[skein.vehicle.ObservedPlant]], the loop
+  * `predictive` predicts by it, else by constant velocity.
   */
 final case class PlantResponse(plant: Plant[?]) extends VelocityResponse:
   require(plant.stepS > 0, s"a plant's step must be positive, got ${plant.stepS} s")

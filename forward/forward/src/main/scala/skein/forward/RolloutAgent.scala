@@ -12,7 +12,7 @@ import skein.vehicle.VehicleKind
   * @param altitudeDownM z of the start, and of the whole flight if the vehicle flies level, world NED, m
   * @param startHeadingRad heading assumed as the command before the first decision, from north
   * @param policy must be a pure function; [[VelocityResponse.performs]] limits its actions
-  * @param eye camera through which alone the vehicle knows its one opponent, if any
+  * @param eye camera that is the vehicle's only source about its one opponent, if any
   * @param kind the kind of vehicle; a car drives like [[CarResponse]], whatever the kind of the other
   *   vehicles
   */

@@ -12,8 +12,8 @@ import skein.vehicle.{
   VehicleModel
 }
 
-/** Vehicles that move by a [[skein.vehicle.SpatialPlant]]. They perform velocities, with or without an
-  * altitude. Yaws are ignored; to hover or to turn in place becomes a command to stand still.
+/** Vehicles that move according to a [[skein.vehicle.SpatialPlant]]. They perform velocities, with or without
+  * an altitude. Yaws are ignored; to hover or to turn in place becomes a command to stand still.
   */
 final case class SpatialResponse(plant: SpatialPlant[?]) extends VelocityResponse:
   require(plant.stepS > 0, s"a plant's step must be positive, got ${plant.stepS} s")

@@ -25,7 +25,7 @@ private[identify] object LeastSquares:
 
   private val MostIterations = 200
 
-  /** A step that changes every parameter by less than this share ends the search. */
+  /** A step that changes every parameter by less than this fraction ends the search. */
   private val SmallStep = 1e-7
 
   /** A step that lowers the sum of squares by less than this share ends the search. It is the square root of

@@ -39,7 +39,7 @@ object Engine:
     * @param refusals why SIMD does not support each link; None if it does
     * @param stepped the engine that steps vehicles together, if any
     * @param gpu the engine that replaces SIMD, or why it does not; None if it was not requested
-    * @param sideBySide that of the SIMD engine, see [[Engine]]
+    * @param sideBySide `sideBySide` of the SIMD engine; see [[Engine]]
     */
   private[lanes] def of(
       lanes: Either[String, String],

@@ -77,7 +77,7 @@ final class LearnerTeams private[lanes] (
     val field = operation * Timetable.Fields
     operations(field) == DECIDE && learns(operations(field + 1))
 
-  /** Whether it is only checked whether the flight is over. */
+  /** Whether this only checks whether the flight has ended. */
   private def isEnd(operation: Int) = operations(operation * Timetable.Fields) == END
 
   private def knowsPending(operation: Int): Boolean =

@@ -35,14 +35,13 @@ trait LearnerWorlds extends AutoCloseable:
 
   def decide(): Unit
 
-  /** Whether the scenario was over in a world since its restart, by an end of its own. */
+  /** Whether, since a world's restart, the scenario has ended there by its own end condition. */
   def hasEnded(world: Int): Boolean
 
   /** Time of the last score, since the run's start, s. */
   def scoredAtS: Float
 
-  /** Writes a score by world, since [[forgetScores]]: the newest or least value, or the sum of all.
-    */
+  /** Writes a score for each world, since [[forgetScores]]: the newest or least value, or the sum of all. */
   def soFar(number: Int, into: Array[Float]): Unit
 
   /** Discards all scores except the newest values. */

@@ -15,7 +15,7 @@ private[lanes] object Opponents:
   /** The two vehicles, with equal delays in all worlds.
     *
     * @param agents the vehicles; their speeds and first headings apply to all worlds
-    * @param eyes the camera of each vehicle that knows its opponent through it alone
+    * @param eyes the camera of each vehicle that knows its opponent only through it
     */
   def inEpisode(
       agents: Vector[RolloutAgent],

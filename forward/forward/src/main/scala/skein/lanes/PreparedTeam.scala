@@ -10,7 +10,7 @@ import skein.lanes.timetable.Timetable
   * @param efforts the vehicle whose effort each judged value is; None if the value is the next of `scores`
   * @param altitudesDownM altitudes of vehicles that fly level
   * @param vehicles the dynamics of each vehicle, compared by reference
-  * @param byOneModel whether all vehicles move by the model of the batch
+  * @param byOneModel whether all vehicles move according to the batch's model
   */
 private[lanes] final case class TeamForm(
     policies: TeamPolicies,
@@ -25,7 +25,7 @@ private[lanes] final case class TeamForm(
 
   export policies.{count, inSpace}
 
-  /** Whether some vehicle knows its opponent through a camera alone. */
+  /** Whether some vehicle knows its opponent only through a camera. */
   def sees: Boolean = policies.eyes.nonEmpty
 
   /** The reason why a GPU does not support such a team; None if it does. */
@@ -77,7 +77,7 @@ private[lanes] final class Episodes(timing: LoopTiming):
     */
   def areOne(form: TeamForm): Boolean = timing.isInstanceOf[LoopTiming.Paused] && !form.sees
 
-  /** Everything that distinguishes an episode from others, as a key. */
+  /** Everything that distinguishes an episode from other episodes, as a key. */
   def nameOf(link: Delays, key: Int, form: TeamForm): Any =
     val delays = if areOne(form) then () else (link, key)
     (delays, form.vehicles, form.durationS, form.policies.needsMore, form.policies.eyes, form.scores.endsBy)

@@ -47,7 +47,7 @@ private[lanes] class TeamAgents(
   private val asksMore             = team.lanes.asksMore(self)
   private var timetable: Timetable = null
 
-  /** The headings of decisions, by slot; null if they are not needed. */
+  /** The headings of decisions, indexed by slot; null if they are not needed. */
   private var told: Directions = null
 
   /** Stores the headings commanded to this vehicle from now on. */

@@ -17,13 +17,13 @@ import skein.units.Expect
   * [[skein.lanes.policy.OpponentLanes]], others by [[skein.lanes.policy.TeamLanes]]. Quadrotors and MuJoCo
   * bodies of other teams are stepped together under the scalar loops ([[SteppedRollouts]]). Everything else
   * runs on the scalar reference ([[skein.forward.Rollout]]); the engine's text then states why.
-  * `docs/engines.md` has the table. The engine of a world depends on its candidate, its link and
-  * `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their order.
-  * One call at a time.
+  * `docs/engines.md` has the table. The engine of a world depends only on its candidate, its link and
+  * `shareEpisodes`, so results do not depend on threads, on a call's other worlds or on their order. One call
+  * at a time.
   *
   * @param accelerator simulates the candidates of [[Worlds.episodesOfEach]] that are formulas, if it supports
   *   the loop and the vehicles
-  * @param isReference uses the scalar reference alone, to compare others with it
+  * @param isReference uses only the scalar reference, to compare others with it
   */
 final class TeamBatch(
     timing: LoopTiming,

@@ -66,7 +66,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
   /** By vehicle: age of its reading, s; filled only where it is needed. */
   val agesS: Array[Array[Float]] = Array.ofDim(lanes.count)
 
-  /** By vehicle: its last known commanded heading, where it is needed. */
+  /** For each vehicle, its last known commanded heading, where it is needed. */
   val known: Array[Directions] = Array.ofDim(lanes.count)
 
   /** Time until the command takes effect, s; null if it is not needed. */

@@ -28,7 +28,7 @@ final class TeamCandidate(
 
 /** The results of each world.
   *
-  * @param values values by score, then by world; NaN where no value counted
+  * @param values values indexed by score, then by world; NaN where no value counted
   */
 final class TeamOutcomes private[lanes] (val values: Vector[Array[Float]]):
   private var done = 0

@@ -1,7 +1,7 @@
 package skein.optimise
 
 /** Evaluates candidates for a [[Search]]. All candidates use equal episodes (common random numbers), so that
-  * different results come from the candidates alone.
+  * different results come from the candidates only.
   */
 trait Evaluator:
 

@@ -27,9 +27,9 @@ final case class LatencyBudget(
   def deviation(jitter: Int, mean: Int): Option[Double] =
     cells(jitter)(mean).map(tally => (tally.mean - truth) / per)
 
-  /** The mean latency up to which, at one jitter, the objective stays within a tolerance of the paused
-    * loop's. Deviations are interpolated linearly between the cells. A cell without a finite value is outside
-    * every tolerance.
+  /** The mean latency up to which, at one jitter, the objective stays within a tolerance of the paused loop's
+    * objective. Deviations are interpolated linearly between the cells. A cell without a finite value is
+    * outside every tolerance.
     *
     * @param tolerance maximum magnitude of [[deviation]], for example 0.05
     */

@@ -131,7 +131,7 @@ object Objective:
     if known.isEmpty then Left(s"expected a scenario with measures; ${scenario.name} has none")
     else read(text, known, Direction.Minimise)(_ => (s"one of ${known.keys.mkString(", ")}", ""))
 
-  /** @param expected what error messages call a known name, and a note that follows it */
+  /** @param expected the word for a known name in error messages, and a note that follows it */
   private def read(text: String, known: ListMap[String, Measure], otherwise: Direction)(
       expected: String => (String, String)
   ): Either[String, Objective] = WeightedSum

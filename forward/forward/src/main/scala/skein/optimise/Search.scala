@@ -194,7 +194,7 @@ final class Search(
 
   /** The grid cell of a candidate. Of the candidates in one cell, only the best can be a leader: candidates
     * that differ by less than a hundredth of every axis share their luck on the episodes, and would leave no
-    * room for others.
+    * room for other candidates.
     */
   private def place(candidate: Vector[Double]): Vector[Long] =
     space.shares(candidate).map(share => (share * 100).round)

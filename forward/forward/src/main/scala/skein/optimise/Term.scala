@@ -20,7 +20,7 @@ trait Term:
     */
   def value(computed: Float, durationS: Double): Double
 
-/** A measure of a scenario; its key is the measure's, such as `off-ring`. */
+/** A measure of a scenario; its key is that of the measure, such as `off-ring`. */
 final case class ScenarioTerm(measure: Measure) extends Term:
   def key: String  = ScenarioTerm.keyOf(measure)
   def unit: String = measure.unit

@@ -6,7 +6,7 @@ import skein.units.*
 import skein.vehicle.PlaneReading
 
 /** Simulates one manoeuvre in a situation, in doubles: the reference for the kernel, the check of the chosen
-  * plan, and the track that others use.
+  * plan, and the track that other vehicles' plans use.
   *
   * Vehicles follow their commands by their plants; a command lasts one step. The heading turns at the step's
   * beginning.

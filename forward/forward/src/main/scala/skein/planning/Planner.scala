@@ -60,7 +60,7 @@ final class Planner private[planning] (
   /** The initial plan: straight on, with the initial deviations. */
   def start: Plan = around(Manoeuvre.straight(cruise, steps))
 
-  /** The initial plan after some time: the remainder of the last, to be evaluated anew. */
+  /** The initial plan after some time: the remainder of the last, to be evaluated again. */
   def resumed(plan: Plan, elapsedS: Double): Plan = around(plan.manoeuvre.shifted(elapsedS, dtS))
 
   private def around(manoeuvre: Manoeuvre): Plan =
@@ -107,7 +107,8 @@ final class Planner private[planning] (
       plan.candidates + blocksPerSlice.toLong * size
     )
 
-  /** Manoeuvres that are always tried: the search's mean, the best, and a few that a pilot would try first.
+  /** Manoeuvres that are always tried: the mean of the search, the best so far, and a few that a pilot would
+    * try first.
     */
   private def known(plan: Plan): Vector[Manoeuvre] =
     val (speed, limit) = (plan.manoeuvre.speeds(0).toDouble, limits.turnRateAt(plan.manoeuvre.speeds(0)))

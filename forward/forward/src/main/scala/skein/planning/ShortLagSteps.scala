@@ -3,7 +3,7 @@ package skein.planning
 import skein.vehicle.{PlaneReading, Plant, ReducedModel}
 
 /** A [[ReducedModel]] with one lag, for steps much shorter than the lag. It uses the model's formulas, except
-  * that the share of a velocity error that remains after a step, e^(−a), is computed as 1 − a · (1 − a/2 +
+  * that the fraction of a velocity error that remains after a step, e^(−a), is computed as 1 − a · (1 − a/2 +
   * a²/6 − …), where a is the step times the rate of decay. The next term of the series is below 7e-6 for a up
   * to 0.5. A search evaluates 1.2 times as many candidates as with the exponential (`PlanBench`).
   */

@@ -53,7 +53,7 @@ object PredictedTrack:
   *   for that of the vehicle itself
   */
 enum Target(val carriesS: Option[Double] = None):
-  /** A vehicle that decides at each step by a policy, on present readings of both, and on the last heading
+  /** A vehicle that decides at each step with a policy, on present readings of both, and on the last heading
     * commanded to this vehicle.
     *
     * @param speed the speed that it commands, m/s

@@ -90,7 +90,7 @@ private[skein] object FixedFormula:
     private val places = Array.fill(own)(-1)
     for (input, place) <- formula.bound.inputs.zipWithIndex do places(input) = place
 
-    /** Replaces the object by another one that [[FixedFormula.fits]]. */
+    /** Replaces the object by another object, which must fit (see [[FixedFormula.fits]]). */
     def take(of: AnyRef): Unit =
       val numbers = formula.parametersOf(of)
       for i <- formula.alike until numbers.length do parameters(i) = numbers(i).toFloat

@@ -30,7 +30,7 @@ private object Passes:
 
   // The limits if inputs and outputs are rows of few arrays, whose addresses need few registers: a step with
   // drag and two lags takes 210 ns in one pass and 250 to 300 in two; the quadrotor's 400 operations reach
-  // 119 M steps a second in four passes, and 95 M in eight of 60.
+  // 119 M steps per second in four passes, and 95 M in eight of 60.
   private val MostOfRows          = 140
   private val MostConstantsOfRows = 30
 

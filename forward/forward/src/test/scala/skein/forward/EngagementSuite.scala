@@ -112,7 +112,7 @@ class EngagementSuite extends munit.FunSuite:
     assert(last(nearest)._3 > 5, s"${last(nearest)}: the nearer evader runs east")
     assertEqualsDouble(last(assigned)._3, 0, 1e-9)
 
-  test("an evader is captured by whichever pursuer comes near, and each has its own outcome"):
+  test("any pursuer that comes near captures the evader, and each evader has its own outcome"):
     val scenario = Fleet(
       Vector(
         agent(Role.Evader, 1, 0, 0, KeepHeading),
@@ -152,7 +152,7 @@ class EngagementSuite extends munit.FunSuite:
     )
 
   test(
-    "in a team without sides each is scored by the distance to " +
+    "in a team without sides each vehicle is scored by the distance to " +
       "the nearest other, and policies choose the speed"
   ):
     // From north to south, towards the middle one, at 1, 2 and 3 m/s.
@@ -175,7 +175,7 @@ class EngagementSuite extends munit.FunSuite:
     for (actual, expected) <- each.zip(Seq(15.0, 15.0, 45.0)) do assertEqualsDouble(actual, expected, 1e-6)
     assertEquals(flown.minDistanceM, each.min)
 
-  test("an engagement needs both sides, or none"):
+  test("an engagement needs either both sides or neither"):
     val mixed = Seq(Role.Evader, Role.Pursuer, Role.Traveller).zipWithIndex.map((role, number) =>
       agent(role, number, 10 * number, 0, KeepHeading)
     )

@@ -128,7 +128,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       assert(needed < threshold, s"$needed m at ${tenths * 0.1} m")
 
   test(
-    "by no sidestep does an evader straight ahead get farther from a hard-turning pursuer than the threshold"
+    "no sidestep takes an evader straight ahead farther from a hard-turning pursuer than the threshold"
   ):
     val missed =
       for
@@ -154,7 +154,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       start.headingRad
     )
 
-  test("while the pursuer turns hard an evader can keep the radius that is needed, and not raise it"):
+  test("while the pursuer turns hard, an evader can keep the radius that is needed, but cannot increase it"):
     val dt = 1e-4
     for (start, number) <- starts(seed = 4, 300).zipWithIndex if start.right > 0.1 do
       val needed = game.radiusNeededM(start.ahead, start.right)
@@ -164,7 +164,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
           (game.radiusNeededM(turned.ahead, turned.right) - needed) / dt
         assertEqualsDouble(rates.max, 0, 0.05, s"seed 4, number $number, $start")
 
-  test("at the edge of what the evader can be run over in, the radius needed is its distance"):
+  test("at the edge of the region in which the evader can be run over, the radius needed is its distance"):
     for distance <- Seq(0.5, 1.0, 2.0) do
       val edge = game.edgeRad - 1e-9
       assertEqualsDouble(

@@ -9,7 +9,7 @@ import skein.vehicle.ReducedModel
 class ImageTimingSuite extends munit.FunSuite:
   private val plant = PlantResponse(ReducedModel.AirSimLag)
 
-  /** Images are on their way, in recognition and waiting at any time. */
+  /** Images are in transit, in recognition and waiting at any time. */
   private val busy =
     GuideCamera.model.copy(takes = LatencyDistribution.Uniform(Span.ofMillis(150), Span.ofMillis(290)))
   private val link = DelayTable.of(LatencyDistribution.Uniform(Span.ofMillis(20), Span.ofMillis(180)))
@@ -80,7 +80,7 @@ class ImageTimingSuite extends munit.FunSuite:
     images(steady(oneWayMs), LatencyDistribution.Constant(Span.ofMillis(takesMs)), workers, untilMs)._2
       .map((number, ns) => number -> (ns * 1e-6).round)
 
-  test("two images may be on their way; while as many are, none is taken"):
+  test("no image is taken while two images are in transit"):
     val link   = steady(160)
     val oneWay = link.delayNs(1, Delays.question(0, 0), 0, 0, 0)
     assertEquals(

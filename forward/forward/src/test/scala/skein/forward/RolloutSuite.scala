@@ -54,7 +54,7 @@ class RolloutSuite extends munit.FunSuite:
       assert(clue(text).matches(".* failed: java.lang.Exception: no way \\(RolloutSuite.scala:\\d+\\)"))
 
   for loop <- loops do
-    test(s"under $loop the result of a world depends on its key alone"):
+    test(s"under $loop the result of a world depends only on its key"):
       val rollout = Rollout(Pair.paper.engagement, loop, DelayTable.vpn, lag)
       val alone   = rollout.fly(WorldRandom.key(7, 3, 11))
       for episode <- 0 until 5 do rollout.fly(WorldRandom.key(7, 3, episode))
@@ -118,7 +118,7 @@ class RolloutSuite extends munit.FunSuite:
       (LoopTiming.Stream(), DelayTable.vpn, "vpn", 9.9, 11.0)
     )
   do
-    test(s"$loop over $name settles where the reference flights did, between $least and $most m"):
+    test(s"$loop over $name settles, like the reference flights, between $least and $most m"):
       val rollout = Rollout(Pair.paper.engagement, loop, link, VelocityResponses.quadrotor())
       for episode <- 0 until 4 do
         val settled = rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM

@@ -8,7 +8,8 @@ class IdentificationSuite extends munit.FunSuite:
   private val truth =
     ReducedModel(gain = 0.95, lagS = 1.7, deadTimeS = 0.12, turnLagS = 2.4, dragPerM = 0.008)
 
-  /** A flight of the model under commands that turn and change speed, sampled ten times a second with noise.
+  /** A flight of the model under commands that turn and change speed, sampled ten times per second with
+    * noise.
     */
   private def flown(
       model: ReducedModel,

@@ -31,7 +31,7 @@ final case class Tilting(gain: Double, lagS: Double, tiltLagS: Double, override 
       east
     )
 
-/** A user's own structure is fitted like Skein's. */
+/** A user's own structure is fitted like a structure of Skein. */
 class OwnStructureSuite extends munit.FunSuite:
   private val structure = Structure(
     "tilting",
@@ -41,7 +41,8 @@ class OwnStructureSuite extends munit.FunSuite:
   private val truth  = Tilting(gain = 0.9, lagS = 1.4, tiltLagS = 0.5)
   private val values = Vector("gain" -> 0.9, "lag-s" -> 1.4, "tilt-lag-s" -> 0.5)
 
-  /** A minute of flight under commands that turn and change speed, sampled ten times a second with noise. */
+  /** A minute of flight under commands that turn and change speed, sampled ten times per second with noise.
+    */
   private def flown(seed: Long, noiseMps: Double): TimeHistory =
     val source   = SplitMix64(seed)
     def normal() = NormalQuantile(source.nextDouble().max(1e-12).min(1 - 1e-12))

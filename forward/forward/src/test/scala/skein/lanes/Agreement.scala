@@ -40,12 +40,12 @@ private[skein] object Agreement:
   private val Told = 5
 
   /** Maximum rounding error of floats that accumulates in the vehicles' motion until a time, m and m/s. It
-    * applies until decisions differ. At 500 m a float is rounded by up to 3e-5 m, here a dozen times a
+    * applies until decisions differ. At 500 m a float is rounded by up to 3e-5 m, here a dozen times per
     * second.
     */
   def mostOff(timeS: Double): Double = 1e-3 + 4e-4 * timeS
 
-  /** A decision of the SIMD engine that differs from the scalar engine's.
+  /** A decision of the SIMD engine that differs from the decision of the scalar engine.
     *
     * @param apart for each output its error, and the bound on the error if each comparison near its threshold
     *   had the other result

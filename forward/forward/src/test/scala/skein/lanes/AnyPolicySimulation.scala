@@ -128,7 +128,9 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
     assert(clue(refusal(Halving).getMessage).contains("a loop whose end depends on what is observed"))
     assert(clue(refusal(Higher(-30)).getMessage).contains("it leaves the altitude"))
 
-  test("a policy that falsely promises to be planar uses the scalar engine, and fails when it is not"):
+  test(
+    "a policy that falsely promises to be planar uses the scalar engine, and fails once it breaks the promise"
+  ):
     val team = fleet(_, Role.Evader -> (_ => Promising), Role.Pursuer -> (_ => Chase))
     val one  = candidates(team, 1, 5).head
     val told =

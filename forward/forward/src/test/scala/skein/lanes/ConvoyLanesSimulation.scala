@@ -48,7 +48,7 @@ class ConvoyLanesSimulation extends munit.FunSuite, Optimised, Unhurried:
         if agent.kind == VehicleKind.Car then agent.copy(startHeadingRad = 0.5 * (number % 3)) else agent
     assertAgree(drag, LoopTiming.Stream(), shared = true, candidates)
 
-  test("a car drives otherwise than a drone in its place flies"):
+  test("a car's path differs from that of a drone in its place"):
     val cars            = candidate(Convoy(), 8)
     val drones          = changed(cars)(_.copy(kind = VehicleKind.Multirotor))
     val Seq(one, other) =

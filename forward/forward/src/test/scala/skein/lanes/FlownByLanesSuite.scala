@@ -159,7 +159,7 @@ class FlownByLanesSuite extends munit.FunSuite:
       val engine = TeamBatch(timing, model, threads = 1).engine(team, false, Seq(DelayTable.vpn)).text
       assert(engine.startsWith("scalar: SIMD supports steps of"), s"$timing: $engine")
 
-  test("the table has a row for everything that the engines support, and no other"):
+  test("the table has rows for exactly what the engines support"):
     val all =
       for
         worlds <- Seq("shared delays", "own delays")

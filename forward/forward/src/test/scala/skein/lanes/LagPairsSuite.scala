@@ -119,7 +119,9 @@ class LagPairsSuite extends munit.FunSuite:
     test(s"over $name compared worlds have the decisions and captures of the scalar reference for 60 s"):
       agreement(link, 60).check(s"over $name", some)
 
-  test("with a period that does not divide 10 s, the mean of the last scores is the scalar reference's"):
+  test(
+    "with a period that does not divide 10 s, the mean of the last scores equals that of the scalar reference"
+  ):
     agreement(DelayTable.direct, 12, periodS = 0.3).check("every 0.3 s", some)
 
   private val badLinks = Seq((110.0, 60.0), (215.0, 36.0), (150.0, 150.0), (200.0, 300.0), (300.0, 300.0))
@@ -142,7 +144,7 @@ class LagPairsSuite extends munit.FunSuite:
       assertEquals(kernel(PairNumber.MeanLast10s).toSeq, longWay(PairNumber.MeanLast10s).toSeq)
       assertEquals(kernel(PairNumber.PursuerEffort).toSeq, longWay(PairNumber.PursuerEffort).toSeq)
 
-  test("a world's result depends on its key and parameters alone, not on its lane or its neighbours"):
+  test("a world's result depends only on its key and parameters, not on its lane or its neighbours"):
     val kernel   = fly(DelayTable.vpn, 60)
     val before   = kernel(PairNumber.MeanLast10s).clone
     val reversed = flown(over(DelayTable.vpn), order = Array.range(0, worlds).reverse)

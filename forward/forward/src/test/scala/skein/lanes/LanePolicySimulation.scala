@@ -73,7 +73,7 @@ class LanePolicySimulation extends munit.FunSuite:
     assert(PolicyLanes.of(Hasty(false)).isRight)
     assert(PolicyLanes.of(Hasty(true)).isLeft)
 
-  test("a policy that is no formula is refused with the reason and the line"):
+  test("a policy that is not a formula is refused with the reason and the line"):
     val refused = PolicyLanes.of(Impatient()).fold(_.getMessage, _ => fail("it was compiled"))
     assert(refused.contains("LanePolicySimulation.scala"), refused)
     assert(refused.contains("System.nanoTime"), refused)

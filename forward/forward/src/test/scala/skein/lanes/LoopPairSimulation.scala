@@ -164,7 +164,7 @@ abstract class LoopPairAgreement(isDaily: Boolean) extends munit.FunSuite:
       val most = Steering(mostOutstanding = Moves.MostInFlight)
       agreement(LoopTiming.Stream(0.02, steering = most), link, 5, model).check(name, 0 until worlds by 3)
 
-/** Each vehicle over one link, one vehicle over most links, and cases that are no combination. */
+/** Each vehicle over one link, one vehicle over most links, and cases that are not combinations. */
 class LoopPairSimulation extends LoopPairAgreement(isDaily = true):
   private val unseenPursuers = Seq[(String, Int => Policy)](
     "remembers"                    -> (world => TrendPursuer(2 + 0.02 * world, 0.5, 1)),
@@ -259,7 +259,9 @@ class LoopPairSimulation extends LoopPairAgreement(isDaily = true):
       val timing = LoopTiming.Stream(periodS, periodS / 2, periodS, asking = Asking(window = 16))
       agreement(timing, wild(40, 200), 5, lag).check("slow", 0 until worlds by 9)
 
-  test("predictive with a period of dead time over a link of much jitter: worlds turn at different times"):
+  test(
+    "predictive, with one period of dead time and a link with high jitter: worlds turn at different times"
+  ):
     val late   = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.1)
     val timing = LoopTiming.Predictive(0.1, late.predictor)
     for (jitterMs, episode) <- Seq(150.0, 300.0).zipWithIndex do
@@ -271,7 +273,7 @@ class LoopPairSimulation extends LoopPairAgreement(isDaily = true):
       agreement(timing, DelayTable.vpn, 60, lag).check("60 s", 0 until worlds by 11)
 
     test(
-      s"$timing: a world's result depends on its key and parameters alone, not on its lane or its neighbours"
+      s"$timing: a world's result depends only on its key and parameters, not on its lane or its neighbours"
     ):
       for link <- Seq(wild(150, 150), changing) do
         val before = fly(timing, link, 20, lag)(PairNumber.MeanLast10s).clone

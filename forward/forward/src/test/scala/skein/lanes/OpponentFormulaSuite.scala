@@ -36,7 +36,7 @@ class OpponentFormulaSuite extends munit.FunSuite:
     shared <- Seq(true, false)
   do
     test(
-      s"the paper's pursuer, written anew, flies like Skein's, to the bit: $timing, shared episodes: $shared"
+      s"the paper's pursuer, rewritten, flies like Skein's, to the bit: $timing, shared episodes: $shared"
     ):
       def flown(by: Int => Policy) =
         val worlds = new PairWorlds:

@@ -105,7 +105,7 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
         assert(value.isNaN == expected.isNaN, s"number $number, world $world: $value, scalar $expected")
         if !expected.isNaN then assertEqualsDouble(value, expected, 4e-3, s"number $number, world $world")
 
-  test("an end that is no formula is refused with its line"):
+  test("an end that is not a formula is refused with its line"):
     val all    = Vector.fill(2)(TeamCandidate(Engagement.ofScenario(ByList(3), durationS), judged))
     val engine = TeamBatch(LoopTiming.Stream(), level).engine(all.head, true, Seq(DelayTable.vpn))
     assert(engine.text.contains("its end is no formula"), engine.text)

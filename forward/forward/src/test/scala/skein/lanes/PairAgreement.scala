@@ -12,7 +12,7 @@ import skein.policy.{Action, Observation, PlanarObservation, Policy}
   * one, and the opponent's heading is that of the decision which the scalar engine knows.
   *
   * @param lanes the SIMD engine's policies, by agent, the evader first
-  * @param policies the policies of one world, by agent
+  * @param policies the policies of one world, indexed by agent
   */
 private[skein] class PairAgreement(
     duel: Pair,
@@ -134,7 +134,7 @@ private[skein] class PairAgreement(
 private[skein] object PairAgreement:
   private val Heading = PolicyLanes.In.Heading
 
-  /** Rounding of a time, as a share of a second; grains of 4 ns are exact. */
+  /** Rounding of a time, as a fraction of a second; grains of 4 ns are exact. */
   private val TimeOff = 2e-7
 
   /** The value of a number that is not computed. */

@@ -35,7 +35,7 @@ class PairBatchSimulation extends munit.FunSuite:
     for world <- 0 until 300 do
       assertEquals(numbers(backwards, 299 - world), numbers(all, world), s"world $world")
 
-  test("worlds whose policies are no formulas use the scalar reference, also among others"):
+  test("worlds whose policies are not formulas use the scalar reference, even among worlds that use SIMD"):
     val worlds   = mixed(40)
     val outcomes = PairBatch(short, LoopTiming.Stream(), lag).fly(worlds, captureRadiusM = 5)
     for world <- 0 until worlds.size if worlds.evader(world) == Straight do
@@ -43,7 +43,7 @@ class PairBatchSimulation extends munit.FunSuite:
 
   for model <- Seq(lag, PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))) do
     test(
-      s"$model, predicted by a model that SIMD does not support, uses the scalar reference, and the engine says so"
+      s"$model, predicted with a model without SIMD support, uses the scalar reference, and says so"
     ):
       val timing = LoopTiming.Predictive(predictor = ConstantTurn)
       val batch  = PairBatch(short, timing, model, threads = 2)
@@ -213,7 +213,7 @@ class PairBatchSimulation extends munit.FunSuite:
     assertEquals(lines(1), here.toString)
 
 object PairBatchSimulation:
-  /** Goes straight on, by a method that is no arithmetic. */
+  /** Goes straight on, by a method that is not arithmetic. */
   val Straight: HeadingPolicy.Memoryless = _.ownHeadingRad.toString.toDouble
 
   val lag: PlantResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)

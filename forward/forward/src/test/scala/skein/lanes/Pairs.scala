@@ -6,7 +6,7 @@ import skein.lanes.score.{Effort, Judged, OfMoment}
 import skein.policy.Policy
 import skein.scenario.{Reduction, Separation}
 
-/** Worlds of a pursuer and an evader, for tests that differ in these two alone. */
+/** Worlds of a pursuer and an evader, for tests that differ only in these two. */
 trait PairWorlds extends Worlds:
   def asked: Set[PairNumber] = PairNumber.all
   def pursuer(world: Int): Policy

@@ -72,7 +72,7 @@ class SpaceLanesSuite extends munit.FunSuite, Optimised:
     val engine = level.engine(candidates.head, true, Seq(DelayTable.vpn))
     assert(engine.text.contains("it leaves the altitude of its vehicle's start"), engine.text)
 
-  test("climbs are not predicted by a model of level flight, and the reason is given"):
+  test("climbs are not predicted with a model of level flight, and the reason is given"):
     val timing = LoopTiming.Predictive(predictor = skein.vehicle.ConstantVelocity)
     val engine = TeamBatch(timing, model).engine(candidates.head, true, Seq(DelayTable.vpn))
     assert(engine.text.contains("SIMD predicts climbs by a model in space"), engine.text)

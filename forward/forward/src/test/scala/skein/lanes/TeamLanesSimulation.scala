@@ -301,7 +301,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
           )
 
   test(
-    "scores from different start times have the results that they have alone, and the scalar engine's"
+    "scores from different start times have the results that they have alone and by the scalar engine"
   ):
     val random = SplitMix64(9)
     val judged = Vector(

@@ -80,7 +80,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
     "vpn-mixed" -> LinkDelays.vpnMixed
   )
 
-  // The reduced model meets all links; the others differ from it in their vehicles alone.
+  // The reduced model meets all links; the others differ from it only in their vehicles.
   private val models = Seq[(String, VelocityResponse, Seq[(String, Delays)])](
     ("lag", lag, links),
     ("drag", PlantResponse(ReducedModel.AirSim), links.filter(_._1 == "vpn")),
@@ -115,7 +115,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
       assert(close == all, s"$close of $all worlds agree")
       assert(captures == all, s"$captures of $all captures agree")
 
-    // Long flights of one loop: the others differ in their timetables alone.
+    // Long flights of one loop: the others differ only in their timetables.
     if timing == LoopTiming.Stream() then
       test(s"$vehicles, $timing over $name: compared worlds have equal decisions and captures for 60 s"):
         agreement(timing, link, WorldRandom.key(4, 1, 0), 60, model).check(name, 0 until worlds by 6)

@@ -74,7 +74,7 @@ object Tower:
       val most       = seen.cruise.value
       (Action.Velocity(wanted * (most / wanted.norm.max(most)), Yaw.Forward), goal)
 
-  /** Keeps a distance from the nearest of all others. */
+  /** Keeps a distance from the nearest of all other vehicles. */
   final case class KeepDistance(keepM: Double, gainPerS: Double) extends Policy:
     type Memory = Unit
     def start: Unit = ()

@@ -40,7 +40,8 @@ final case class AgeAwarePursuer(ownSpeedMps: Double, trust: Double, turnRateRad
     val most  = turnRateRadPerS * seen.elapsedS
     seen.ownHeadingRad + turn.max(-most).min(most)
 
-/** A network with two hidden layers of 16 rectified neurons, written without knowledge of Skein's. */
+/** A network with two hidden layers of 16 rectified neurons, written without knowledge of Skein's networks.
+  */
 final class RectifiedNetwork(weights: Array[Double], turnRateRadPerS: Double)
     extends HeadingPolicy.Memoryless:
   require(weights.length == RectifiedNetwork.Weights)

@@ -18,7 +18,7 @@ class VelocityReadSuite extends munit.FunSuite:
     assert(needsVelocity(North))
     assert(needsVelocity(East))
 
-  test("a policy that reads positions alone needs no velocities"):
+  test("a policy that reads only positions needs no velocities"):
     assert(!needsVelocity(Place))
 
 object VelocityReadSuite:

@@ -129,7 +129,9 @@ class PlanKernelSuite extends munit.FunSuite:
     test(s"kernel and scalar reference agree on a pursuit of an opponent by a policy never seen: $name"):
       assertAgree(situation(Behaviour(opponent(draw(SplitMix64(3))))), objective)
 
-  test("kernel and scalar reference agree on a vehicle by a plant never seen, and on an opponent by it"):
+  test(
+    "kernel and scalar reference agree on a vehicle, and on an opponent, with a plant that is new to them"
+  ):
     val bicycle = PredictedVehicle(Bicycle(1.2, 0.3, 4, 0.4), Rolling(3, -2, 0.4, 5, 0.1), 100, -50, 0.5)
     assertAgree(situation(Behaviour(track)).copy(own = bicycle), objective)
     assertAgree(situation(Behaviour(evader.copy(vehicle = bicycle.moved(-104, 55)))), objective)
@@ -203,7 +205,7 @@ class PlanKernelSuite extends munit.FunSuite:
     assert(block.turnRates.distinct.length > size * steps / knots / 2)
     assert(block.turnRates.max > 0.9 && block.turnRates.min < -0.9)
 
-  test("a manoeuvre is simulated like by the reduced model"):
+  test("a manoeuvre is simulated as by the reduced model"):
     val model     = ReducedModel.AirSim
     val manoeuvre = Manoeuvre(IArray.tabulate(steps)(0.05f * _), IArray.tabulate(steps)(4 + 0.2f * _))
     val flown     = ManoeuvreRollout(situation(Behaviour(track)), objective, dtS).fly(manoeuvre).track

@@ -18,7 +18,7 @@ class FormsSuite extends munit.FunSuite:
     assertEquals(forms(1002), Right(1002))
     for odd <- Seq(1003, 1005, 1007) do assertEquals(forms(odd).left.map(_.getMessage), Left(s"$odd is odd"))
 
-  test("of ever new forms those used recently are kept, and the others compiled again"):
+  test("if new forms keep coming, recently used ones are kept, and the others are compiled again"):
     val (forms, compiled) = counted(mostRefused = 2, _ => true, most = 10)
     for number <- 1001 to 2000 do
       forms(number): Unit

@@ -6,11 +6,11 @@ import scala.jdk.CollectionConverters.*
 import skein.formula.{Op, Trace}
 
 class LaneCompilerSuite extends munit.FunSuite:
-  /** A pass over vectors of worlds must not load or store at an index that is the loop's counter alone, or
-    * the JVM may take seconds to compile it ([[LaneFunction.UNUSED]]).
+  /** A pass over vectors of worlds must not load or store at an index that is only the loop's counter, or the
+    * JVM may take seconds to compile it ([[LaneFunction.UNUSED]]).
     */
   for parameters <- 1 to 2 do
-    test(s"no index is the loop's counter alone, with parameters: $parameters"):
+    test(s"no index is only the loop's counter, with parameters: $parameters"):
       val trace = Trace()
       val root  = trace.unary(Op.Sin, trace.add(trace.param(0), trace.input(0)))
       // Longer than a pass: the root is stored for the last.

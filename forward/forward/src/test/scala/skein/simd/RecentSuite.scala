@@ -3,7 +3,7 @@ package skein.simd
 import skein.formula.Trace
 
 class RecentSuite extends munit.FunSuite:
-  test("of ever new keys those used recently are kept, and the others made again"):
+  test("if new keys keep coming, recently used ones are kept, and the others are made again"):
     var made             = 0
     val recent           = Recent[Int, String](10)
     def get(number: Int) = recent.getOrMake(number):
@@ -18,7 +18,7 @@ class RecentSuite extends munit.FunSuite:
     assertEquals(get(900), "value 900")
     assertEquals(made, 1001)
 
-  test("equal expressions are compiled once, also with others between"):
+  test("equal expressions are compiled once, even if other expressions lie between them"):
     def function(number: Int) =
       val trace = Trace()
       BoundFunction.of(Vector(trace.add(trace.input(0), trace.const(number)))).function

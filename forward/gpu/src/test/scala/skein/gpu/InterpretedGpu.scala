@@ -5,7 +5,7 @@ import scala.collection.mutable
 
 /** A GPU that interprets kernels thread by thread, according to the PTX specification, so that kernels are
   * tested on machines without a GPU. It is slow, supports the instructions that [[Ptx]] writes, and refuses
-  * others.
+  * all others.
   */
 final class InterpretedGpu extends Gpu:
   def name  = "an interpreter of PTX"
@@ -46,7 +46,7 @@ final class InterpretedGpu extends Gpu:
 /** A parsed kernel.
   *
   * @param parameters the kernel's parameters by name, in their order
-  * @param labels index of the instruction after each label, by name
+  * @param labels index of the instruction after each label, keyed by name
   * @param tables targets of each table of branches
   */
 private final case class PtxProgram(
@@ -130,7 +130,7 @@ private final class PtxThread(
     def d(i: Int)         = wide(number(i))
     def p(i: Int)         = conditions(number(i))
     def toFloat(a: Float) = floats(number(0)) = a
-    // A NaN has the bits of a GPU's NaN, which differ from a CPU's.
+    // A NaN has the bits of a GPU's NaN, which differ from those of a CPU.
     def rounded(a: Float)       = toFloat(if a.isNaN then java.lang.Float.intBitsToFloat(0x7fffffff) else a)
     def toBits(a: Int)          = bits(number(0)) = a
     def toWide(a: Long)         = wide(number(0)) = a

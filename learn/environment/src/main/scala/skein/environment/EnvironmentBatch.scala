@@ -73,7 +73,7 @@ final class EnvironmentBatch private (
     groups.foreach(_.reset(seeds))
     isReset = true
 
-  /** Resets the environments of the mask, with their seeds. */
+  /** Resets each environment that `mask` selects, with its entry in the seeds. */
   def reset(seeds: Array[Long], mask: Array[Boolean]): Unit =
     require(seeds.length == count && mask.length == count, s"expected $count seeds and as long a mask")
     require(isReset, "expected a reset of all environments before one of some")
@@ -176,7 +176,7 @@ object EnvironmentBatch:
         made <- Try(new EnvironmentBatch(side, count, autoreset, block)).toEither.left.map(_.getMessage)
       yield made
 
-    /** The learners' names, a line each, for callers in other languages. */
+    /** The learners' names, one line each, for callers in other languages. */
     def learners: String = names.mkString("\n")
 
     /** Makes a batch, for callers in other languages.

@@ -91,7 +91,7 @@ final class EnvironmentBuffers(
         into(i) = from.get(place + i * stride)
         i += 1
 
-  /** Writes a learner's and its environment's state at the begin of an episode, except its observation. */
+  /** Writes a learner's and its environment's state at the start of an episode, except its observation. */
   def begun(agent: Int, number: Int, distanceM: Float): Unit =
     distance(agent, number, distanceM)
     reward(agent, number, 0)

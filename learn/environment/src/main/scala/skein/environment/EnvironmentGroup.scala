@@ -8,8 +8,8 @@ import skein.signal.SplitMix64
   * them. Mutable; one thread at a time.
   *
   * They begin a ''run'' together, which lasts as long as an episode. If an episode ends earlier, by a capture
-  * or because the scenario is over, the next begins immediately in the current run, and lasts until the run's
-  * end; worlds that cannot restart alone begin a new run.
+  * or because the scenario has ended, the next begins immediately in the current run, and lasts until the
+  * run's end; worlds that cannot restart alone begin a new run.
   *
   * @param learning indices of the learners' vehicles
   * @param first index of the group's first environment in the batch; the others follow at a distance of
@@ -73,7 +73,7 @@ private final class EnvironmentGroup(
     for world <- 0 until count do clear(world)
     show(into.observations)
 
-  /** Resets the environments of the mask, with their seeds. */
+  /** Resets each environment that `mask` selects, with its entry in the seeds. */
   def reset(newSeeds: Array[Long], mask: Array[Boolean]): Unit =
     val chosen = (0 until count).filter(world => mask(numberOf(world)))
     for world <- chosen do seed(world, newSeeds(numberOf(world)))

@@ -16,7 +16,7 @@ import skein.units.Expect
   *
   * A connection is one batch. It begins with a text of `name=value` lines: `count`, `autoreset` (0 next step,
   * 1 same step, 2 disabled), `file`, and the settings. A text without a `file` is answered by the learners'
-  * names, a line each, and another one follows. Each request then begins with a byte: 1 for a step; 2 for a
+  * names, one line each, and another follows. Each request then begins with a byte: 1 for a step; 2 for a
   * reset, followed by a seed (64 bits) for each environment; 3 for a reset of some, followed by the seeds and
   * by a byte for each environment; 4 for a description of their engine. Every answer, also that to a text,
   * begins with a byte: 0 done, followed by a text if the request was a 4 or a text without a `file`; 1 wrong

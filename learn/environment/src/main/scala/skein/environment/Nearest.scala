@@ -2,7 +2,7 @@ package skein.environment
 
 import skein.scenario.{Positions, Quantity}
 
-/** Distance of a vehicle from the nearest of some others, in the plane or in space, m. */
+/** Distance of a vehicle from the nearest of some other vehicles, in the plane or in space, m. */
 private final class Nearest(self: Int, others: Array[Int], inSpace: Boolean) extends Quantity:
   def of(positions: Positions): Double =
     var least = distanceM(positions, others(0))

@@ -14,7 +14,7 @@ private final class Starts(side: LearnerSide):
   val eastM: Array[Float]      = agents.map(_.startY.toFloat).toArray
   val headingRad: Array[Float] = agents.map(_.startHeadingRad.toFloat).toArray
 
-  /** With two vehicles, the index of the one from which the other's distance counts. */
+  /** With two vehicles, the index of the vehicle from which the other vehicle's distance is measured. */
   private val centre = side.engagement.roles.indexOf(Role.Pursuer).max(0)
 
   /** Draws the starts of an episode, see [[EnvironmentSettings.startWithinM]]. */

@@ -161,7 +161,9 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
           else Set.empty
       assert(captured > 20, s"$mode: $captured captures")
 
-  test("learners climb by tilt with SIMD, by the quadrotor one by one, and not by a level model"):
+  test(
+    "learners climb with the tilt model by SIMD, with the quadrotor one by one, and not with a level model"
+  ):
     val settings = EnvironmentSettings(climbMps = 2, link = "none", episodeS = 10)
     for plant <- Seq("tilt", "quadrotor") do
       val learner = Learner(settings.copy(plant = plant), 2)
@@ -181,7 +183,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       Some("plant: expected tilt or quadrotor, got reduced: learners climb (climb_mps)")
     )
 
-  test("ages are those of the link"):
+  test("ages equal the link's delays"):
     def age(link: String) =
       val learner = Learner(EnvironmentSettings(link = link, episodeS = 10), 1)
       learner.reset(3)
@@ -193,7 +195,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
     assertEqualsFloat(age("none"), 0, 1e-6f)
     assert(age("direct") < 0.06 && age("vpn") > 0.05 && age("constant:400ms") > 0.2)
 
-  test("with both sides learning a learner is due at every step: both, where nothing takes time"):
+  test("if both sides learn, at least one learner is due at every step, and both are if nothing takes time"):
     for (loop, link, least) <- Seq(("paused", "none", 40), ("stream", "vpn", 1)) do
       val learner = Learner(EnvironmentSettings(learners = "both", loop = loop, link = link, episodeS = 5), 3)
       learner.reset(1, 2, 3)

@@ -58,7 +58,7 @@ class SideTaskSimulation extends munit.FunSuite:
       val actor      = drawn(8)
       val (rate, at) = if side == "pursuer" then (1.0, 0.0) else (0.0, math.Pi)
       val policy     = LearnedPolicy(LearnedPolicy.shape(Vector(8)), SideTask.parameters(actor), rate, at)
-      // Without a network, delays are no matter of chance.
+      // Without a network, delays do not vary at random.
       val settings = EnvironmentSettings(learners = side, link = "none", episodeS = 20)
       val reward   = episode(SideTask.of(settings, None, 1, 1).fold(fail(_), identity), actor)
       val both     = game.flownBy(if side == "pursuer" then Role.Pursuer else Role.Evader, policy)

@@ -9,7 +9,7 @@ import skein.units.*
 
 /** The paper's duel, but the pursuer observes the evader only through its camera.
   *
-  * @param blind whether it observes through the camera alone; if false, its policy receives the evader's true
+  * @param blind whether it observes only through the camera; if false, its policy receives the evader's true
   *   position
   * @param recogniser the recogniser: `tags` finds AprilTags on the evader's sides; `detector`: the evader has
   *   no tags, and the detector that comes with this library looks for it; or the file of another ONNX

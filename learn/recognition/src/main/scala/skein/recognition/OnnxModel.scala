@@ -51,7 +51,7 @@ object OnnxModel:
 
   /** @param threads number of threads that compute one image; several images at a time (`Recognise`) need one
     *   each
-    * @return Left says why the file is no such model
+    * @return Left says why the file is not such a model
     */
   def load(file: Path, threads: Int = 1): Either[String, OnnxModel] =
     if !java.nio.file.Files.isReadable(file) then

@@ -21,7 +21,8 @@ final case class DetectorAccuracy(
 object DetectorAccuracy:
   val Camera: Pinhole = Pinhole(800, 600, Radians(StrictMath.toRadians(100)))
 
-  /** A box whose middle is closer to a quadrotor's than this, or than half its size, counts as its box; px.
+  /** A box whose middle is closer to a quadrotor's middle than this, or than half its size, counts as its
+    * box; px.
     */
   private val NearPx = 8.0
 

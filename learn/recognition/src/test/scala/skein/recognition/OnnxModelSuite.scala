@@ -31,7 +31,7 @@ class OnnxModelSuite extends munit.FunSuite:
     )
     assertEquals(model.run(image(1, 2, 3), form).map(_("y").shape), Right(Vector(1, 3, 1, 1)))
 
-  test("an image of another size is scaled to the model's"):
+  test("an image of another size is scaled to the model's size"):
     val small = InputForm(2, 2).tensor(image(0, 0, 0)).fold(fail(_), identity)
     assertEquals(small.length, 12)
     assertEquals(small.map(value => math.round(value * 255)).toSeq.distinct, Seq(10))

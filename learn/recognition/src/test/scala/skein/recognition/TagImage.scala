@@ -4,7 +4,7 @@ import skein.airsim.{Image, Pixels, Shot}
 import skein.rpc.Bytes
 import skein.units.*
 
-/** Draws a tag as a pinhole camera's image, with nine rays a pixel, on a ground of varying grey. */
+/** Draws a tag as a pinhole camera's image, with nine rays per pixel, on a ground of varying grey. */
 object TagImage:
   private val patterns = AprilTags.dictionary()
 

@@ -2,7 +2,7 @@ package skein.mcap
 
 import scala.collection.mutable
 
-/** The schemas and channels that a file has defined so far, and checks of references to them. */
+/** The schemas and channels that a file has defined so far; checks references to them. */
 private[mcap] final class Catalogue:
   private val schemas  = mutable.LongMap.empty[Record.Schema]
   private val channels = mutable.LongMap.empty[Record.Channel]

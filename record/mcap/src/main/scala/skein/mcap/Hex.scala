@@ -1,6 +1,7 @@
 package skein.mcap
 
-/** Hexadecimal digits of numbers, independent of the locale: a format string would use the machine's. */
+/** Hexadecimal digits of numbers, independent of the locale; a format string would use the machine's locale.
+  */
 private[mcap] object Hex:
   def of(number: Int): String = "0x" + digits(number, 8)
 

@@ -8,8 +8,8 @@ import net.jpountz.lz4.LZ4FrameOutputStream.{BLOCKSIZE, FLG}
 import net.jpountz.xxhash.XXHashFactory
 
 /** LZ4 frames (https://github.com/lz4/lz4/blob/dev/doc/lz4_Frame_format.md), to and from one array. Blocks
-  * and checksums are lz4-java's. That library's own reader of frames refuses blocks that refer to earlier
-  * ones, which the MCAP libraries for C++ and Python write.
+  * and checksums are computed by lz4-java. That library's own reader of frames refuses blocks that refer to
+  * earlier ones, which the MCAP libraries for C++ and Python write.
   */
 private[mcap] object Lz4Frame:
   private val Number          = 0x184d2204

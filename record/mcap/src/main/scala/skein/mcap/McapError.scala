@@ -32,7 +32,7 @@ enum McapError:
   /** A CRC does not match: bytes have changed since they were written. */
   case WrongCrc(at: Place, what: String, expected: Int, came: Int)
 
-  /** The bytes of a chunk are no valid output of its compression. */
+  /** The bytes of a chunk are not valid output of its compression. */
   case NotDecompressed(at: Place, compression: String, why: String)
 
   /** The chunk's compression is neither `zstd` nor `lz4` nor none. */

@@ -15,7 +15,7 @@ enum Parsed:
   /** The file is complete, and all its CRCs are right. */
   case Ended
 
-  /** Nothing more can be read; after `CutOff`, everything before the cut has been read. */
+  /** Nothing more can be read; after `CutOff`, everything before the cut was read. */
   case Failed(error: McapError)
 
 /** Reads a file from its start to its end, in pieces of any size: bytes in, records out, no I/O of its own.
@@ -53,7 +53,9 @@ final class StreamParser(limits: McapLimits = McapLimits()):
 
   def channel(id: Int): Option[Record.Channel] = known.channel(id)
 
-  /** Offers more of the file after `NeedsBytes`. The parser keeps the array until it needs bytes again. */
+  /** Passes the next part of the file after `NeedsBytes`. The parser keeps the array until it needs bytes
+    * again.
+    */
   def offer(bytes: Array[Byte], start: Int, end: Int): Unit =
     require(from == until && !noMore, "offered before it was needed")
     require(0 <= start && start <= end && end <= bytes.length, s"bytes $start until $end of ${bytes.length}")

@@ -2,7 +2,7 @@ package skein.record
 
 import skein.units.Expect
 
-/** The clocks of flights, by name. */
+/** The kinds of clock that a flight may run on, with their labels. */
 enum ClockKind(val label: String):
   case Real    extends ClockKind("real")
   case Virtual extends ClockKind("virtual")

@@ -8,7 +8,8 @@ import scala.util.Using
   */
 private[record] object FoxgloveSchemas:
 
-  /** Foxglove's schemas of binary messages, as `FileDescriptorSet` in Base64, by name; under the MIT licence.
+  /** Foxglove's schemas of binary messages, as `FileDescriptorSet` in Base64, keyed by name; under the MIT
+    * licence.
     */
   val binary: Map[String, String] = Vector("RawImage", "CompressedImage", "PointCloud").map: name =>
     val set = Using.resource(getClass.getResourceAsStream(s"foxglove/$name.fds"))(_.readAllBytes())

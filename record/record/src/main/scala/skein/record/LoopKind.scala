@@ -1,6 +1,6 @@
 package skein.record
 
-/** Skein's own control loops, by name. */
+/** Skein's own control loops, with their labels. */
 enum LoopKind(val label: String):
   case Paused     extends LoopKind("paused")
   case Sequential extends LoopKind("sequential")

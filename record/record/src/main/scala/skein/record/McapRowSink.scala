@@ -52,7 +52,7 @@ final class McapRowSink private (channel: FileChannel, file: Path, heading: Reco
   private def why(error: Throwable) = s"cannot write $file: $error"
 
 object McapRowSink:
-  /** Number of commits between two flushes: a second's. */
+  /** Number of commits between two flushes, about one second of them. */
   private val FlushEvery = 20
 
   /** Creates the file, which must not exist yet.

@@ -6,7 +6,7 @@ import scala.concurrent.{Future, Promise}
 
 /** Keeps a flight in memory: for virtual time, where writing would be the slowest part, and for tests.
   *
-  * @param capacity maximum number of records; one more is a failure
+  * @param capacity maximum number of records; a further record is a failure
   */
 final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecorder.defaultCapacity)
     extends Recorder:

@@ -22,7 +22,7 @@ sealed trait Record extends Recordable:
 sealed trait Recordable:
   def row: Record
 
-/** A row of any table that is made later. See [[LaterDecision]] for decisions. */
+/** A row of any table that is created later. See [[LaterDecision]] for decisions. */
 final class LaterRow(make: => Record) extends Recordable:
   lazy val row: Record = make
 
@@ -56,7 +56,7 @@ object Record:
   * @param id names the flight in tables and pictures, for example `stream-vpn`
   * @param clock the label of a [[ClockKind]]
   * @param scenario for people: the scenario's title, and the policy that replaced its own, if any
-  * @param version version of the program that recorded
+  * @param version version of the recording program
   * @param scenarioName the scenario's name for programs; without one, its title is its name
   */
 final case class FlightRow(
@@ -77,7 +77,8 @@ final case class FlightRow(
   /** The kind of one of Skein's own loops; absent for a user's loop. */
   def loopKind: Option[LoopKind] = LoopKind.parse(loop).toOption
 
-  /** Whether it is a paused flight, a reference for others: the simulator stood still while a loop decided.
+  /** Whether it is a paused flight, a reference for other flights: the simulator stood still while a loop
+    * decided.
     */
   def isPaused: Boolean = loopKind.contains(LoopKind.Paused)
 
@@ -190,7 +191,7 @@ final case class Sensing(vehicle: String, decision: Long, sensor: String, measur
 
 /** One decision for one vehicle, with all its inputs.
   *
-  * @param sequence counts the decisions for this vehicle
+  * @param sequence index of the decision among this vehicle's decisions
   * @param own the vehicle's own reading that was used; its columns begin with `own`
   * @param opponent the opponent's reading that was used; its columns begin with `opponent`
   * @param relativeX the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles of
@@ -268,10 +269,10 @@ final case class Planned(
   *
   * @param decision the sequence of the decision of `vehicle`; the decision says when it was made, by what was
   *   known of the solver's clock
-  * @param question counts the questions for `vehicle`; those that are missing here were not answered in time
+  * @param question sequence number of the request for `vehicle`; missing numbers were not answered in time
   * @param askedAt when the question left
   * @param receivedAt when the answer arrived
-  * @param thinking time from the question's arrival at the solver to the answer's departure, by the solver's
+  * @param thinking time from the question's arrival at the solver to the answer's departure, on the solver's
   *   clock
   * @param clock absent before the first answer of a solver
   */
@@ -383,7 +384,7 @@ final case class CommandRow(
 final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instant, outcome: CommandOutcome)
     extends Record
 
-/** How a command ended; recorded by name, the error in a column of its own. */
+/** How a command ended; recorded under its name, the error in a column of its own. */
 enum CommandOutcome:
   case Done
 
@@ -424,7 +425,7 @@ final case class Truth(vehicle: String, validAt: Instant, positionNed: Vector3) 
   */
 final case class Ending(at: Instant, how: EndingKind, reason: Option[String]) extends Record
 
-/** Recorded by name. */
+/** Recorded under its name. */
 enum EndingKind:
   /** It lasted for its whole duration. */
   case Completed
@@ -435,18 +436,18 @@ enum EndingKind:
   /** It could not continue. */
   case Failed
 
-/** What an [[Event]] is about; recorded by name. */
+/** What an [[Event]] is about; recorded under its name. */
 enum EventSubject:
   /** A request for a vehicle's reading that was not answered. */
   case Reading
 
-  /** A camera whose requested images did not arrive. */
+  /** A camera from which requested images did not arrive. */
   case Camera
 
   /** The solver in another process, its link, and questions to it. */
   case Solver
 
-/** The kind of an [[Event]]; recorded by name. */
+/** The kind of an [[Event]]; recorded under its name. */
 enum EventKind:
   /** A newer value replaced one that was not used yet. */
   case Dropped
@@ -463,7 +464,7 @@ enum EventKind:
   /** A policy did not decide in time. */
   case DeadlineMissed
 
-  /** A solver in another process was restarted or replaced: policies' memories start anew. */
+  /** A solver in another process was restarted or replaced: policies' memories start again. */
   case SolverRestarted
 
   /** An answer arrived more than once; it counts once. */
@@ -499,7 +500,7 @@ enum EventKind:
   /** The simulator's clock did not keep pace with the controller's for some seconds. */
   case ClockDrift
 
-  /** Readings contradicted the known offset of the clocks, so its estimation began anew. */
+  /** Readings contradicted the estimated clock offset, so its estimation was restarted. */
   case ClockRestarted
 
   /** The simulator's clock ran back, stood still, jumped or differed from vehicle to vehicle: the flight has
@@ -510,7 +511,7 @@ enum EventKind:
   /** Another client took control of a vehicle or moved it: the flight has no result. */
   case VehicleTaken
 
-  /** The machine was too busy to fly: the flight is not compared with others. */
+  /** The machine was too busy to fly: the flight is not compared with other flights. */
   case Starved
 
   /** A vehicle touched something. */

@@ -31,10 +31,10 @@ enum RecordError(val message: String):
   /** The file is in use, for example by a flight that still writes to it, or may not be read. */
   case CannotOpen(file: Path, reason: String) extends RecordError(s"cannot open recording $file: $reason")
 
-  /** The file is no recording, or a damaged one. */
+  /** The file is not a recording, or a damaged one. */
   case NotARecording(file: Path, reason: String) extends RecordError(s"$file is not a recording: $reason")
 
-  /** The file is no recording exported as MCAP, or a damaged one. */
+  /** The file is not a recording exported as MCAP, or a damaged one. */
   case NotAnExport(file: Path, reason: String)
       extends RecordError(s"$file is not an exported recording: $reason")
 

@@ -22,7 +22,7 @@ final case class Recording(
 
 object Recording:
 
-  /** Parameters recorded in flight count as the heading's, as in a file. */
+  /** Parameters recorded in flight count as parameters of the heading, as in a file. */
   def apply(heading: RecordingHeader, records: Seq[Record]): Recording =
     Recording(
       heading.copy(parameters = heading.parameters ++ records.collect { case parameter: ParameterRow =>

@@ -55,7 +55,7 @@ object RecordingReader:
         Expect.that(found >= RecordingFormat.oldest && found <= RecordingFormat.version):
           RecordError.OtherVersion(file, RecordingFormat.oldest, RecordingFormat.version, found)
 
-  /** Whether a file is DuckDB's: its name follows an eight-byte checksum. */
+  /** Whether a file is a DuckDB file: its name follows an eight-byte checksum. */
   private def isDuckDb(file: Path): Either[RecordError, Boolean] =
     try
       Using.resource(Files.newInputStream(file)): in =>

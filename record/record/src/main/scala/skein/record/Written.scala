@@ -1,6 +1,6 @@
 package skein.record
 
-/** A closed recording's content: rows by table, tables without rows left out. */
+/** A closed recording's content: its rows for each table, without the tables that have none. */
 final case class Written(rows: Map[String, Long]):
   def total: Long = rows.values.sum
 

@@ -32,7 +32,9 @@ class DifferenceSuite extends munit.FunSuite:
     val event = Event(Instant.Epoch, EventKind.Dropped, None, "x")
     assertEquals(Difference.between(one, event).map(_.column), Some("the table"))
 
-  test("a recorder counts the records that it was offered by table, in addition to the heading's"):
+  test(
+    "a recorder counts the records that it was offered in each table, in addition to those of the heading"
+  ):
     val recorder = MemoryRecorder(Samples.heading)
     for number <- 1 to 5 do recorder.offer(Samples.reading(number))
     recorder.offer(Samples.decision(1))

@@ -5,8 +5,8 @@ import skein.scene.SceneFile
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** Scenes by the definitions of Foxglove's schemas: a line strip is type 0, a lifetime of 0 is infinite,
-  * colours are between 0 and 1, and the identity quaternion is 1 in `w` and 0 elsewhere.
+/** Scenes according to the definitions of Foxglove's schemas: a line strip is type 0, a lifetime of 0 is
+  * infinite, colours are between 0 and 1, and the identity quaternion is 1 in `w` and 0 elsewhere.
   */
 class FoxgloveViewsSuite extends munit.FunSuite:
   private val names = Vector("Pursuer", "Evader") ++ (3 to 6).map(number => s"Vehicle$number")

@@ -90,7 +90,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(schemas.flatMap(one => refused(one.name, ujson.read(one.data.utf8))), Vector.empty)
 
   folder.test(
-    "log times are when the controller knew a fact, and publish times when it was made or sent"
+    "a log time is when the controller learned a fact; a publish time is when the fact was made or sent"
   ): folder =>
     val mcap                 = exported(folder)
     def times(table: String) =
@@ -150,7 +150,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(points.map(_.size), (1 to 29).map(second => (second * 10 + 1).min(201)).toVector)
     assertEquals((points.last.head, points.last.last), (91.1, 291.1))
 
-  folder.test("a file that is no exported recording is refused, and leaves no output behind"): folder =>
+  folder.test("a file that is not an exported recording is refused, and leaves no output behind"): folder =>
     val mcap                                        = exported(folder)
     val again                                       = folder.resolve("again.duckdb")
     def refused(change: McapWriter => Unit): String =
@@ -178,5 +178,5 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     val there = folder.resolve("flight.duckdb")
     assertEquals(McapRecording.read(mcap, there), Left(RecordError.AlreadyExists(there)))
 
-  test("texts are written by the rules of JSON"):
+  test("texts are written according to the rules of JSON"):
     assertEquals(Json.string("a\"b\\c\n\u0001é🛸"), "\"a\\\"b\\\\c\\u000a\\u0001é\\ud83d\\udef8\"")

@@ -134,7 +134,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       case Left(RecordError.CannotCreate(`file`, _)) => ()
       case other                                     => fail(s"expected CannotCreate, got $other")
 
-  folder.test("a file that is no recording is refused with the reason"): folder =>
+  folder.test("a file that is not a recording is refused with the reason"): folder =>
     val missing = folder.resolve("missing.duckdb")
     assertEquals(RecordingReader.read(missing), Left(RecordError.NoSuchFile(missing)))
     val text = Files.writeString(folder.resolve("text.duckdb"), "position,velocity\n1,2\n")

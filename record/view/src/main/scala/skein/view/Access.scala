@@ -15,7 +15,7 @@ final case class Access(port: Int, origins: Set[String] = Set.empty):
 
   /** The reason why a request is refused; None if it is accepted.
     *
-    * @param headers names in lower case, and values as received
+    * @param headers the header fields: names in lower case, values as received
     */
   def refusal(headers: Iterable[(String, String)]): Option[String] =
     def said(name: String) = headers.collect { case (`name`, value) => value }.toVector

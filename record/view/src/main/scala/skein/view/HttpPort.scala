@@ -10,8 +10,9 @@ import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import skein.link.Seats
 
-/** A port that speaks HTTP. The number of connections is limited, and silent ones make room for others. Pages
-  * of other sites get no answer, and browsers give answers only to the server's own pages.
+/** A port that speaks HTTP. The number of connections is limited; an idle connection is closed to make room
+  * for a new one. Requests from pages of other sites are refused, and browsers show answers only to the
+  * server's own pages.
   */
 object HttpPort:
 
@@ -20,7 +21,7 @@ object HttpPort:
     * @param port 0 for any that is free
     * @param access the access rules for the port on which it listens
     * @param refused called with each request that `access` refuses
-    * @param answer must not block; an answer that is no error counts as activity
+    * @param answer must not block; an answer that is not an error counts as activity
     * @return fails if it cannot listen
     */
   def bind(port: Int, seats: Seats, access: Int => Access, refused: () => Unit)(

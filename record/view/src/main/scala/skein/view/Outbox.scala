@@ -2,9 +2,9 @@ package skein.view
 
 import scala.collection.immutable.{TreeMap, VectorMap}
 
-/** Messages that wait for one viewer. The newest wins: beyond the limits, the oldest is dropped, first of the
-  * subscription with too many, then of all. Notices of the server are few, one for each key, and are sent
-  * before everything else.
+/** Messages that wait for one viewer. The newest messages are kept: beyond the limits, the oldest is dropped,
+  * first of the subscription with too many messages, then of all. Notices of the server are few, one for each
+  * key, and are sent before everything else.
   *
   * @param lost number of messages dropped since the viewer connected
   */

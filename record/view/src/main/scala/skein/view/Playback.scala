@@ -2,7 +2,7 @@ package skein.view
 
 import skein.units.{Instant, Span}
 
-/** The position in a recording that is played: a pure clock that can stop, seek and run at another speed.
+/** The position in a recording during playback: a pure clock that can stop, seek and run at another speed.
   *
   * @param start the recording's first time
   * @param end the recording's last time, at which playback stops
@@ -26,8 +26,8 @@ final case class Playback private (
 
   def hasEnded(now: Instant): Boolean = position(now) >= end
 
-  /** Plays or stops, from the current position or from another one, which is clamped to start and end.
-    * Playing from the end starts again from the beginning.
+  /** Plays or stops, from the current position or from another, which is clamped to start and end. Playing
+    * from the end starts again from the beginning.
     */
   def controlled(playing: Boolean, speed: Double, seek: Option[Instant], now: Instant): Playback =
     val wanted = seek.getOrElse(position(now))

@@ -13,7 +13,7 @@ final class RefusalCounts private[view] (seats: Seats):
   /** Connections refused because too many were open. */
   def refusedConnections: Long = seats.refusedConnections
 
-  /** Silent connections that were closed to make room for others. */
+  /** Number of silent connections that were closed to make room for new ones. */
   def displacedConnections: Long = seats.displacedConnections
 
   /** Requests of foreign pages, for missing resources, or for forbidden actions. */

@@ -37,7 +37,7 @@ abstract class Show private[view] (
 
   def controls: Map[FlightControl, () => Unit] = Map.empty
 
-  /** Sends new messages to the viewers. To be called about forty times a second. */
+  /** Sends new messages to the viewers. To be called about forty times per second. */
   def turn(now: Instant): Unit
 
   /** Calls [[turn]]. If it fails, viewers get the reason, and the next turn follows. */

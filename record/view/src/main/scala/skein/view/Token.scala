@@ -6,7 +6,7 @@ import java.util.HexFormat
 
 /** A secret printed in the terminal: with it the page can control a flight. */
 final class Token private (val word: String):
-  /** Compares in constant time: a wrong word takes as long as the right one. */
+  /** Compares in constant time, independent of how much of the word is right. */
   def is(said: String): Boolean = MessageDigest.isEqual(word.getBytes(UTF_8), said.getBytes(UTF_8))
 
 object Token:

@@ -159,7 +159,7 @@ object ViewServer:
         val stage = ViewerStage(show, clock, counts, () => guest.spoke())
         upgrade.handleMessages(guest.during(whole(show.limits, counts).via(stage)), Some(name))
 
-  /** Joins the parts of messages; a message that is too long, or too slow, ends the connection. */
+  /** Joins the parts of messages; a message that is too long or too slow ends the connection. */
   private def whole(limits: ViewerLimits, counts: RefusalCounts)(using
       ActorSystem
   ): Flow[Message, Message, ?] =

@@ -41,7 +41,7 @@ private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalC
         message.flatMap(obey).fold(refuse, _ => spoke())
         if refused > show.limits.refusals then completeStage() else pull(in)
 
-      /** Invalid frames are the viewer's mistake, and no failure of the server. */
+      /** Invalid frames are the viewer's mistake, not a failure of the server. */
       override def onUpstreamFailure(error: Throwable): Unit =
         counts.refusedMessage()
         completeStage()

@@ -12,7 +12,7 @@ class OutboxSuite extends munit.FunSuite:
     val outbox = Outbox.empty[String](limits).offered(1, "a", 1).offered(2, "b", 1).offered(1, "c", 1)
     assertEquals(drained(outbox), Vector("a", "b", "c"))
 
-  test("beyond a subscription's limit its oldest message is dropped, and none of other subscriptions"):
+  test("beyond a subscription's limit its oldest message is dropped, but no message of other subscriptions"):
     val outbox = (1 to 5).foldLeft(Outbox.empty[String](limits).offered(2, "quiet", 1))((all, at) =>
       all.offered(1, at.toString, 1)
     )

@@ -23,7 +23,7 @@ class PlaybackSuite extends munit.FunSuite:
       standing.controlled(playing = true, 10, None, at(0)).controlled(playing = true, 0.5, None, at(2))
     assertEquals(slower.position(at(12)), at(125))
 
-  test("playback seeks to any time of the recording, and to no other"):
+  test("playback seeks to any time of the recording, and clamps times outside it"):
     assertEquals(standing.controlled(playing = false, 1, Some(at(130)), at(7)).position(at(8)), at(130))
     assertEquals(standing.controlled(playing = true, 1, Some(at(0)), at(7)).position(at(7)), at(100))
     assertEquals(standing.controlled(playing = true, 1, Some(at(1e6)), at(7)).position(at(7)), at(160))

@@ -76,7 +76,7 @@ class ShowSuite extends munit.FunSuite:
   private val image  = "/vehicles/Pursuer/front_center/image"
   private val sensor = ImagingSensor.camera("Pursuer", "front_center", "Scene")
 
-  test("the newest of a camera's images is shown, as a JPEG, at most ten times a second"):
+  test("the newest of a camera's images is shown, as a JPEG, at most ten times per second"):
     val feed   = Feed()
     val show   = LiveShow(heading, feed, sensors = Vector(sensor))
     val viewer = watching(show, image, "/skein/image")
@@ -102,7 +102,7 @@ class ShowSuite extends munit.FunSuite:
     assert(java.util.Base64.getDecoder.decode(camera("schema").str).length > 100)
     assertEquals(channels.find(_("topic").str == "/scene").get("encoding").str, "json")
 
-  test("a seek over many images of a recording shows the newest before it, and no other"):
+  test("a seek over many images of a recording shows only the newest image before its target"):
     val filmed =
       heading.records ++ (1 to 30).flatMap(step => Seq(Samples.reading(step), Samples.image(step * 3)))
     val show   = RecordedShow.of(filmed.zipWithIndex.map((row, at) => (at.toLong, row)).toVector)

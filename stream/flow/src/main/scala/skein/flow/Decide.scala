@@ -24,9 +24,9 @@ object Decide:
     * is in progress at a time: while the policy is late, observations are decided by `otherwise` immediately.
     * A late answer is discarded together with its memory.
     *
-    * '''Emits when''' the policy decides, or its deadline is over. '''Backpressures when''' a decision is in
-    * progress, or downstream backpressures. '''Completes when''' upstream completes and the last decision was
-    * emitted. '''Cancels when''' downstream cancels.
+    * '''Emits when''' the policy decides, or its deadline has passed. '''Backpressures when''' a decision is
+    * in progress, or downstream backpressures. '''Completes when''' upstream completes and the last decision
+    * was emitted. '''Cancels when''' downstream cancels.
     *
     * @param asksAgain whether a late policy is called again at every observation, as suits a policy that
     *   abandons an older observation for a newer one

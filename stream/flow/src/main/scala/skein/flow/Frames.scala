@@ -25,7 +25,7 @@ object Frames:
 
   /** Requests a frame at each element of `ticks`, which is the number of frames due since the last element,
     * as [[Metronome]] emits it. A frame's `validAt` is its exposure; every emitted frame is newer than the
-    * one before. A request that fails never stops the source.
+    * one before. A failed request never stops the source.
     *
     *   - '''Emits when''' a frame has arrived that is newer than all before and downstream demands.
     *   - '''Backpressures when''' never: while downstream is slow, the newest frame replaces the waiting one.

@@ -3,8 +3,8 @@ package skein.flow
 import java.util.concurrent.ConcurrentHashMap
 import java.util.concurrent.atomic.AtomicBoolean
 
-/** Makes vehicles hold their positions, whatever is decided: one switch for all that share it, changed from
-  * any thread. [[Steer]] obeys it.
+/** Makes vehicles hold their positions, whatever is decided: one switch for all vehicles that share it, which
+  * any thread may change. [[Steer]] obeys it.
   */
 final class Hold:
   private val holding   = AtomicBoolean()

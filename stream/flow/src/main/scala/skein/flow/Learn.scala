@@ -12,7 +12,7 @@ object Learn:
     *
     * '''Emits when''' a lesson has a result and downstream demands. '''Backpressures when''' never; beyond
     * `most` waiting elements, the oldest is dropped and reported. '''Completes when''' upstream has completed
-    * and the last lesson is over. '''Cancels when''' downstream cancels. '''Fails when''' a lesson does.
+    * and the last lesson has ended. '''Cancels when''' downstream cancels. '''Fails when''' a lesson does.
     *
     * @param most maximum number of elements in a lesson
     * @param onDropped called for every element that is in no lesson

@@ -24,10 +24,10 @@ enum Unrecognised[+A]:
 
   case Failed(frame: Stamped[A], cause: Throwable)
 
-  /** A frame with a later exposure was begun or emitted before it. */
+  /** Another frame with a later exposure was started or emitted first. */
   case Overtaken(frame: Stamped[A])
 
-/** Runs recognition on frames, several at a time: the next one is begun before the last is done.
+/** Runs recognition on several frames at a time: the next frame is started before the last is done.
   *
   * A late worker continues and gets no new frame until it has ended, so at most `workers` frames are in
   * progress. A worker that never ends is lost.

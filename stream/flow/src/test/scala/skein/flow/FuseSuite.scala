@@ -27,7 +27,7 @@ class FuseSuite extends munit.FunSuite:
     val late    = inOrder.patch(4, Nil, 1) :+ inOrder(4)
     assertEquals(fused(late*)._1.last, fused(inOrder*)._1.last)
 
-  test("a late detection treated as new would shift the estimate by the distance flown meanwhile"):
+  test("treating a late detection as new would shift the estimate by the distance covered since"):
     val readings                     = (0 to 10).map(i => "evader" -> measured(i * 50))
     val seen                         = measured(350, variance = 0.0025)
     def offM(detection: Measurement) =

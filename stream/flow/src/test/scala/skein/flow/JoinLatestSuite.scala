@@ -33,7 +33,7 @@ class JoinLatestSuite extends munit.FunSuite:
       joined(patienceMs = 50)(0 -> ("a", 1), 10 -> ("b", 1), 100 -> ("a", 2), 130 -> ("b", 2))
     assertEquals(emitted, Seq(10L -> Map("a" -> 1, "b" -> 1), 130L -> Map("a" -> 2, "b" -> 2)))
 
-  test("when its patience is over, a join emits the values received so far"):
+  test("when its patience has elapsed, a join emits the values received so far"):
     val (emitted, _) =
       joined(patienceMs = 50)(0 -> ("a", 1), 10 -> ("b", 1), 100 -> ("a", 2), 170 -> ("b", 2))
     assertEquals(

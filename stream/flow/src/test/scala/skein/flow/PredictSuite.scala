@@ -69,7 +69,7 @@ class PredictSuite extends munit.FunSuite:
     val (left, verified) = waiting.heldAgainst(forecast)
     assertEquals((left.made, verified.map(_.error)), (Vector.empty, Vector(Metres(4))))
 
-  test("each prediction is compared with the readings around its time, and its error reported"):
+  test("each prediction is compared with the readings around its time, and its error is reported"):
     val (_, verified)     = predicted()
     val (moving, resting) = verified.partition(_.vehicle == 0)
     // Constant velocity is off by ½ a t² = ½ · 2 m/s² · (60 ms)².

@@ -66,7 +66,7 @@ class RecogniseSuite extends munit.FunSuite:
     .value
     Run(emitted, skipped, replaced, most)
 
-  test("two workers that need 20 ms each keep all of 90 frames a second, in order and 20 ms old"):
+  test("two workers that need 20 ms each keep all of 90 frames per second, in order and 20 ms old"):
     val two = run(perSecond = 90, count = 900, workers = 2)(_ => 20)
     assertEquals(two.emitted.map(_.frame), 0 until 900)
     assert(two.emitted.forall(_.ageMs < 20.001), two.emitted.map(_.ageMs).max)
@@ -86,7 +86,7 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(mixed.emitted.size + mixed.replaced, 300)
     assertEquals(mixed.mostAtOnce, 3)
 
-  test("twice as many frames as workers wait behind an unfinished one, and then none is begun until it ends"):
+  test("twice as many frames as workers may wait behind an unfinished frame; no other starts until it ends"):
     val held = run(perSecond = 100, count = 80, workers = 2)(frame => if frame == 0 then 505 else 5)
     assertEquals(held.emitted.map(_.frame), Seq(0, 1, 2, 3) ++ (50 until 80))
     assertEquals((held.replaced, held.skipped), (46, Vector.empty))

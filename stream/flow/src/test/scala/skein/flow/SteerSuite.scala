@@ -66,7 +66,7 @@ class SteerSuite extends munit.FunSuite:
     val ended = events.collect { case (_, Ended(command, _, _)) => command }
     assertEquals((ended ++ replaced).sorted, (0 until 10).toSeq)
 
-  test("over a fast link every command is sent immediately and ends when the next arrives"):
+  test("over a fast link every command is sent immediately, and ends when the next one arrives"):
     val (events, most, replaced) = steered(oneWay = 18.millis, every = 100.millis, minInterval = Span.Zero)
     assertEquals(
       events.collect { case (at, Sent(command, _)) => (at, command) },

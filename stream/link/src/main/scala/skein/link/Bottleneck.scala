@@ -5,9 +5,9 @@ import skein.units.*
 
 /** One direction of a line that all connections of a link share: it transmits its queue, first in, first out,
   * at its rate. Nothing is dropped. A connection with more to send than the queue accepts keeps the rest at
-  * its sender, and hands over piece by piece as there is room, in turn with the others. So data on another
-  * connection waits for at most a full queue and a piece of every waiting connection; data on one connection
-  * waits for everything sent before on it, as behind the head of one TCP connection.
+  * its sender, and hands over piece by piece as there is room, in turn with other connections. So data on
+  * another connection waits for at most a full queue and a piece of every waiting connection; data on one
+  * connection waits for everything sent before on it, as behind the head of one TCP connection.
   *
   * Times count from the link's start. Any thread.
   */

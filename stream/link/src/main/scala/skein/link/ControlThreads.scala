@@ -3,7 +3,7 @@ package skein.link
 import java.util.concurrent.{ConcurrentHashMap, ThreadFactory}
 import scala.jdk.CollectionConverters.*
 
-/** The threads on the path of readings, decisions and commands: the scheduler's, those of sockets, and those
+/** The threads on the path of readings, decisions and commands: the threads of the scheduler, of sockets, and
   * of Pekko's dispatchers that are [[ControlExecutor]]s. They neither block nor compute for long.
   */
 object ControlThreads:

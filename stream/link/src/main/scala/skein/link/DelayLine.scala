@@ -28,7 +28,7 @@ import skein.units.*
   *
   * Bytes sent into a silence count as lost; neither side learns of it before the link breaks.
   *
-  * @param open makes the delivery of a line that opens at this time
+  * @param open creates the delivery for a line that opens at this time
   * @param sinceStart time since the link's start
   * @param broken the error that both sides get when the link breaks
   */
@@ -145,7 +145,7 @@ private[link] final class DelayLine(
           repeatsAt = at
           scheduleOnce(Timer.Repeat, (at - sinceStart()).max(Span.Zero).toDuration)
 
-      /** Hands the bottleneck the bytes that it has room for.
+      /** Passes as many bytes to the bottleneck as it has room for.
         *
         * @param held whether there was no room before
         */

@@ -70,7 +70,7 @@ final class EmulatedLink(
     packets.duplicates.sum
   )
 
-  /** A new connection over this link; its first side is the client's, its second the server's. To be
+  /** A new connection over this link; its first side is at the client, its second at the server. To be
     * materialised once.
     *
     * @param broken the error that both sides get when the link breaks the connection

@@ -13,8 +13,8 @@ enum FirstBytes:
   /** The bytes fit the port's own protocol: the rest may be read. */
   case Own
 
-  /** The bytes so far could begin an HTTP request: the next ones decide, and until then nothing may be
-    * obeyed.
+  /** The bytes so far could begin an HTTP request: the next bytes decide, and until then none may be acted
+    * on.
     */
   case Undecided
 
@@ -65,9 +65,7 @@ object FirstBytes:
       _ => None
     ).filter(_.nonEmpty)
 
-  /** HTTP methods that a page may send without permission by an OPTIONS request, and methods that programs
-    * send.
-    */
+  /** HTTP methods that a page may send without a prior OPTIONS request, and methods that programs send. */
   private val Methods =
     Vector("GET", "POST", "HEAD", "PUT", "DELETE", "OPTIONS", "CONNECT", "TRACE", "PATCH", "PRI")
       .map(word => ByteString(s"$word ".getBytes(US_ASCII)))

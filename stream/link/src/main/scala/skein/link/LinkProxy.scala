@@ -55,7 +55,7 @@ object LinkProxy:
     * @param watching observes each connection's bytes at the client's side of the link, so with the link's
     *   delay
     * @param beside makes a stage at the server's side of the link for each connection; unlike `watching`, the
-    *   stage may remove bytes and add others
+    *   stage may remove bytes and add new ones
     */
   def start(
       listenAt: Address,
@@ -145,7 +145,7 @@ object LinkProxy:
         waiting :+= one
         one.future
 
-  /** A stage that both directions of a connection pass through; its first side is the client's. */
+  /** A stage that both directions of a connection pass through; its first side is at the client. */
   type Passing = BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed]
 
   /** Observes the connections of a proxy. Thread-safe. */

@@ -33,7 +33,7 @@ private[link] object Packets:
   def of(bytes: ByteString): Iterator[ByteString] =
     if bytes.size <= Bytes then Iterator.single(bytes) else bytes.grouped(Bytes)
 
-/** Bytes on their way.
+/** Bytes in transit.
   *
   * @param due time at which they come out; [[Segment.Never]] while they are lost and not yet sent again
   */

@@ -7,8 +7,8 @@ import skein.units.*
 
 /** Allocates a port's limited places. When all are taken, a new guest gets the place of the earliest guest
   * that has not yet sent a message of the port's protocol; else of the one that has been silent for the
-  * longest time, if that is at least `silence`; else it is refused. So guests that only hold a place make
-  * room immediately for others. Safe from any thread.
+  * longest time, if that is at least `silence`; else it is refused. So a guest that only holds a place is
+  * removed immediately when a new guest needs it. Safe from any thread.
   */
 private[skein] class Places(most: Int, silence: Span):
   private val guests = ConcurrentHashMap[Long, Places.Guest]()

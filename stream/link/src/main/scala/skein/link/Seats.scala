@@ -13,7 +13,7 @@ private[skein] final class Seats(most: Int, private val clock: Clock):
   private val numbers            = AtomicLong()
   private val displaced, refused = AtomicLong()
 
-  /** Connections that lost their place to another. */
+  /** Connections that lost their place to a new connection. */
   def displacedConnections: Long = displaced.get
 
   /** Connections that were refused for lack of a place. */
@@ -34,7 +34,7 @@ private[skein] final class Seats(most: Int, private val clock: Clock):
       None
 
 private[skein] object Seats:
-  /** Silence after which a connection may lose its place to another. */
+  /** Silence after which a connection may lose its place to a new connection. */
   val Silent: Span = Span.ofSeconds(5)
 
   /** One connection's seat, until it has `left`. */

@@ -93,7 +93,7 @@ object TcpTransport:
     engine.setUseClientMode(true)
     val asked = engine.getSSLParameters
     asked.setProtocols(Protocols)
-    // The name is verified by the rules of browsers.
+    // The name is verified according to the rules of browsers.
     asked.setEndpointIdentificationAlgorithm("HTTPS")
     engine.setSSLParameters(asked)
     TlsEngine(engine)

@@ -17,8 +17,8 @@ private[skein] object TlsProbe:
   /** Time limit of connecting, and of waiting for the answer: short, since the user waits for the result. */
   val Within: Span = Span.ofSeconds(2)
 
-  /** Sends a TLS ClientHello, and returns whether the answer is TLS, whatever its content. Blocks for
-    * `within` to connect, and as long again for the answer.
+  /** Sends a TLS ClientHello, and returns whether the answer is TLS, whatever its content. Blocks for at most
+    * `within` to connect, and for at most `within` again for the answer.
     */
   def answers(at: Address, within: Span = Within): Boolean =
     tried(at, within)(greeted).exists: answer =>

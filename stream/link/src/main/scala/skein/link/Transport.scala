@@ -46,7 +46,8 @@ trait Transport:
     */
   def connect(to: Address): Flow[ByteString, ByteString, Future[Done]]
 
-  /** Incoming connections. The future completes when bound, or fails (port taken). Port 0 takes a free one.
+  /** Incoming connections. The future completes when the port is bound, or fails (port taken). Port 0 takes a
+    * free port.
     */
   def listen(at: Address): Source[Incoming, Future[Listening]]
 

@@ -188,7 +188,7 @@ object UdpSocket:
     try InetSocketAddress(InetAddress.getByName(at.host), at.port)
     catch case _: UnknownHostException => throw TransportError.UnknownHost(at)
 
-  /** A peer that was silent for this long makes room for others. */
+  /** A peer that was silent for this long loses its place when another peer needs it. */
   val Silence: Span = Span.ofSeconds(2)
 
   /** Maximum number of one peer's received datagrams that wait. */

@@ -42,7 +42,7 @@ class BackgroundExecutorLiveSuite extends munit.FunSuite, Unhurried:
     assertEquals((background.size, usual.size), (1, 1))
     assertEquals(on, background.peek +: Vector.fill(99)(usual.peek))
 
-  test("a thread that got the processor stays"):
+  test("a thread that got the processor is kept"):
     assertEquals(ran(Span.ofSeconds(3600)), Vector.fill(100)(background.peek))
     assertEquals((background.size, usual.size), (1, 0))
 

@@ -73,7 +73,7 @@ class DeliverySuite extends munit.FunSuite:
     assertEquals(line.breaksAt, Some(ms(1300)))
     assertEquals(delivery(faults = faults, opened = ms(1300)).breaksAt, Some(ms(2000)))
 
-  test("random stalls are in order, with the requested frequency and length, and equal for equal seeds"):
+  test("random stalls are in order, have the requested frequency and length, and are equal for equal seeds"):
     val faults = Faults(stallEvery = Some(Span.ofSeconds(10)), stallLasts = Span.ofSeconds(2))
     val stalls = faults.stalls(7).take(10_000).toVector
     assertEquals(faults.stalls(7).take(10_000).toVector, stalls)

@@ -40,7 +40,7 @@ class FirstBytesSuite extends munit.FunSuite:
     for own <- Seq(ByteString("GETTING"), ByteString("AKKA"), ByteString(0, 0, 0, 10)) do
       assertEquals(verdict(own), Own)
 
-  test("a port that knows its protocol's first bytes accepts no others, not even a single byte"):
+  test("a port that knows its protocol's first bytes refuses all other bytes, even a single byte"):
     val own = Set(0xfd, 0xfe)
     assertEquals(verdict(ByteString(0xfd), own), Own)
     assertEquals(verdict(ByteString(0x00), own), Foreign("a first byte of 0x00"))
@@ -55,7 +55,7 @@ class FirstBytesSuite extends munit.FunSuite:
     20.seconds
   )
 
-  test("the guard passes all bytes of its own protocol, and none of foreign ones"):
+  test("the guard passes all bytes of its own protocol, and no bytes of other protocols"):
     assertEquals(through(ByteString("G"), ByteString("ET"), ByteString("S on")), ByteString("GETS on"))
     val error = intercept[TransportError.Foreign](through(ByteString("GE"), ByteString("T / HTTP")))
     assertEquals(

@@ -86,7 +86,7 @@ class LinkProxySuite extends munit.FunSuite:
       assertEquals(third, (came = 1, ended = None))
       assertEquals((counts.connections, counts.disconnects), (2L, 0L))
 
-  test("the end of all connections is awaited until the last bytes have arrived, or for a limited time"):
+  test("closing waits until the last bytes of all connections have arrived, or for a limited time"):
     val profile = LatencyProfile.parse("constant:400ms", Left(_)).toOption.get
     val waited  = VirtualTime
       .run(1): system =>

@@ -36,7 +36,7 @@ class PlacesSuite extends munit.FunSuite:
       assert(places.admit())
       assert(!places.admit())
 
-  test("of guests without a message the earliest makes room, however short its stay"):
+  test("the earliest guest that has sent no message makes room, however short its stay"):
     val places = Places(3, Span.ofSeconds(5))
     val spoken = Guest(Span.ofSeconds(100))
     val mute   = Seq.fill(3)(Guest(Span.Zero, hasSpoken = false))

@@ -110,7 +110,7 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
   /** Number of tasks that have begun; other threads may read it with a delay. */
   def begun: Long = tasks
 
-  /** Ends the start of the system: from now on, blocking is an error. */
+  /** Ends the start-up of the system: from now on, blocking is an error. */
   def booted(): Unit = booting = false
 
   /** Runs tasks and advances time until `done`. `actors` describes the live actors, for a report. */
@@ -134,8 +134,8 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
     else if tasksThisTime % Loop.tasksPerLook == 0 then lookAtProcessor()
     task.run()
 
-  /** Reads the processor time, relative to the first reading so that one long task does not count. Not called
-    * at every task, since a reading takes as long as a short task.
+  /** Reads the processor time, relative to the first reading, so that one long task does not count. Not
+    * called for every task, since a reading takes as long as a short task.
     */
   private def lookAtProcessor(): Unit =
     val taken = Loop.processorNanos()

@@ -19,7 +19,7 @@ enum Problem:
   /** Code on the loop would have blocked the only thread that could unblock it. */
   case Blocked(call: String)
 
-  /** Code on the loop handed a task to threads that virtual time does not govern. */
+  /** Code on the loop passed a task to threads outside virtual time. */
   case LeftTheLoop(executionContext: String)
 
   /** A dispatcher that needs threads of its own was requested. */

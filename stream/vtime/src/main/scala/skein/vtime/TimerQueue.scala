@@ -11,7 +11,7 @@ private final class Timer(val dueNanos: Long, val sequence: Long, val task: Runn
     val byTime = java.lang.Long.compare(dueNanos, other.dueNanos)
     if byTime != 0 then byTime else java.lang.Long.compare(sequence, other.sequence)
 
-/** Timers by time and sequence. A cancelled one stays until it is due or until half of the queue is
+/** Timers by time and sequence. A cancelled timer stays until it is due or until half of the queue is
   * cancelled, so that cancelling costs nothing and yet the queue holds at most twice the active timers, plus
   * [[TimerQueue.slack]].
   */

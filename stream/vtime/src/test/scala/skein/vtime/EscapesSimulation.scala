@@ -23,7 +23,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
       "the cause does not show this suite's code"
     )
 
-  test("a promise completed by another thread is an escape and shows that thread's stack"):
+  test("a promise completed by another thread is reported as an escape, with that thread's stack"):
     val error = stopped(): system =>
       import system.dispatcher
       val promise = Promise[Int]()
@@ -117,14 +117,14 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
       case other => fail(s"another problem: $other")
     assert(clue(taken) < 10.seconds)
 
-  test("a stream of many elements at one instant is no livelock"):
+  test("a stream of many elements at one instant is not a livelock"):
     val run = VirtualTime.run(1): system =>
       given ActorSystem = system
       Source(1 to 3_000_000).runWith(Sink.fold(0L)(_ + _))
     assertEquals(run.value, 4_500_001_500_000L)
 
   test(
-    "a future that nothing can complete is a deadlock, with the time of the last event and the live actors"
+    "a future that nothing can complete is a deadlock; the report states the last event and the live actors"
   ):
     val error = stopped(): system =>
       system.actorOf(Props(Silent()), "silent"): Unit

@@ -46,7 +46,7 @@ class OperatorsSuite extends munit.FunSuite:
     assertEquals(times(_ => ticks.takeWithin(250.millis)).map(_._1), Seq(1, 2, 3))
     assertEquals(times(_ => ticks.dropWithin(250.millis).take(2)), Seq(4 -> 300.0, 5 -> 400.0))
 
-  test("groupedWithin emits the elements received so far when its time is over"):
+  test("groupedWithin emits the elements received so far when its time has elapsed"):
     val grouped = times(_ => ticks.groupedWithin(100, 250.millis).take(2))
     assertEquals(grouped, Seq(Seq(1, 2, 3) -> 250.0, Seq(4, 5) -> 500.0))
 
@@ -77,7 +77,7 @@ class OperatorsSuite extends munit.FunSuite:
     // Demand ends at 0; the first check, of those 100 ms apart, after more than 800 ms:
     assertEquals(failure(_.backpressureTimeout(800.millis).mapAsync(1)(_ => Future.never)), 900.millis)
 
-  test("a circuit breaker lets a call through again exactly when its reset time is over"):
+  test("a circuit breaker lets a call through again exactly when its reset time has elapsed"):
     val run = VirtualTime.run(1): system =>
       import system.dispatcher
       val breaker =
@@ -93,7 +93,7 @@ class OperatorsSuite extends munit.FunSuite:
       Source(Seq(300, 100, 200)).mapAsync(3)(ms => after(ms.millis)(Future.successful(ms))(using system))
     assertEquals(answered, Seq(300 -> 300.0, 100 -> 300.0, 200 -> 300.0))
 
-  test("an ask times out exactly when its time is over"):
+  test("an ask times out exactly when its time has elapsed"):
     val failedAt = VirtualTime.run(1): system =>
       import system.dispatcher
       given Timeout = 5.seconds

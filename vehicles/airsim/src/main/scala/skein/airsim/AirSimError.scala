@@ -32,7 +32,7 @@ object AirSimError:
   /** Time-out of a first call: on a busy machine, a link that was just started needs seconds for it. */
   val FirstWithin: Span = Span.ofSeconds(15)
 
-  /** Explains a failed first call, when it is not yet known what listens at the address. */
+  /** Explains why a first call failed, when it is not yet known what listens at the address. */
   def ofFirst(error: RpcError, at: Address): String = error match
     case RpcError.Timeout(_, after) =>
       s"who listens at $at takes the connection, but has said nothing for ${after.toSeconds.brief} s; " +

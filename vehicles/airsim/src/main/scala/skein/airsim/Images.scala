@@ -23,7 +23,7 @@ enum Encoding:
   /** A PNG file. Encoding takes the simulator long. */
   case Png
 
-  /** One 32-bit float a pixel; depths are in m. */
+  /** One 32-bit float per pixel; depths are in m. */
   case Numbers
 
 /** A request for one image.

@@ -15,12 +15,13 @@ import skein.units.*
   *     behind the second: from then on each move would begin when its successor arrives, for the rest of the
   *     flight.
   *
-  * So, when the answer to a replaced move is missing for [[MoveQueue.AnswerWithin]], a probe is sent behind
-  * the next move, on the same ordered connection. If the probe is answered and the move is not, the vehicle's
-  * task is cancelled once more, which adds no move to AirSim's queue: after a lost cancel, the replaced move
-  * ends and the next begins; after a lost answer, the next move ends, and the loop sends another. If the
-  * answer is still missing [[MoveQueue.Settles]] later, it is taken as lost and replaced by the answer it
-  * must have been: false, replaced. If the probe's answer is lost too, the procedure starts again.
+  * So when the answer to a replaced move has been missing for [[MoveQueue.AnswerWithin]], a probe is sent
+  * behind the next move, on the same ordered connection. If the probe is answered and the move is not, the
+  * vehicle's task is cancelled once more, which adds no move to AirSim's queue: after a lost cancel, the
+  * replaced move ends and the next begins; after a lost answer, the next move ends, and the loop sends
+  * another. If the answer is still missing [[MoveQueue.Settles]] later, it is taken as lost and replaced by
+  * the answer it must have been: false, replaced. If the probe's answer is lost too, the procedure starts
+  * again.
   *
   * @param onLost called with one line for each missed answer: what happened to it
   */
@@ -65,7 +66,7 @@ final class MoveQueue(multirotor: Multirotor, onLost: String => Unit)(using syst
     if !replaced.answer.isCompleted && replaced.withdrawn.trySuccess(()) then
       onLost("a replaced move was not answered: its answer is taken for lost")
 
-  /** Makes a call in addition to the moves, unless it is no longer needed. */
+  /** Sends a call in addition to the moves, unless it is no longer needed. */
   private def beside(replaced: Sent)(call: Multirotor => Future[Either[RpcError, Unit]])(
       next: Either[RpcError, Unit] => Unit
   ): Unit = if !replaced.answer.isCompleted then

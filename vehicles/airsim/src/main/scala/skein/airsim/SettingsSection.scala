@@ -25,7 +25,7 @@ object SettingsError:
   private val MostShown = 120
 
 /** An object of a `settings.json` and its path. A missing key reads as its default; the first invalid value
-  * ends all reading. Keys that are read are remembered: [[unread]] lists the others, so that nothing in a
+  * ends all reading. Keys that are read are remembered: [[unread]] lists all other keys, so that nothing in a
   * file is ignored silently.
   */
 final private[skein] class SettingsSection private (fields: Obj, path: String, read: SettingsSection.Read):
@@ -76,7 +76,7 @@ final private[skein] class SettingsSection private (fields: Obj, path: String, r
   /** Counts the whole section as read: a part that is switched off has no effect in AirSim either. */
   def switchedOff(): Unit = read.all += path
 
-  /** Counts nothing of the section as read, whatever was read before. */
+  /** Marks every key of the section as unread, whatever was read before. */
   def passedOver(): Unit = read.none += path
 
   /** The paths of all keys that were not read, in the file's order; a section of which nothing was read
@@ -132,7 +132,7 @@ private[skein] object SettingsSection:
   final private class Misfit(val error: SettingsError)
       extends RuntimeException(error.message, null, false, false)
 
-  /** The position at which a text ceases to be JSON, and the mistake there.
+  /** The position at which a text stops being valid JSON, and the mistake there.
     *
     * @param mistake the exception of `ujson`, whose cause states the mistake after the whole path to it
     */

@@ -11,7 +11,7 @@ import ujson.Obj
   * @param firstPerson whether the view is its own (`IsFpvVehicle`), which makes it the default vehicle of
   *   calls that name none
   * @param armed whether it is armed after the start and after a reset (`DefaultVehicleState`)
-  * @param sensors the sensors that are switched on, by name
+  * @param sensors the sensors that are switched on, keyed by name
   */
 final case class VehicleSettings(
     name: String,
@@ -48,8 +48,8 @@ final case class WorldSettings(
 ):
   require(vehicles.nonEmpty, "a world needs a vehicle")
 
-  /** The default vehicle of calls that name none: the last by name of those with `IsFpvVehicle`, else the
-    * first.
+  /** The vehicle for calls that name none: of the vehicles with `IsFpvVehicle` the last by name, else the
+    * first vehicle.
     */
   def defaultVehicle: VehicleSettings =
     vehicles.filter(_.firstPerson).maxByOption(_.name).getOrElse(vehicles.minBy(_.name))
@@ -72,7 +72,8 @@ object WorldSettings:
 
   val Default: WorldSettings = WorldSettings(Vector(VehicleSettings(SimpleFlight)))
 
-  /** Reads a `settings.json`. A file without vehicles gives one, named after its type, as in AirSim. */
+  /** Reads a `settings.json`. A file without vehicles yields one vehicle, named after its type, as in AirSim.
+    */
   def parse(text: String): Either[SettingsError, WorldSettings] = SettingsSection.read(text)(read(_, text))
 
   /** The world of these vehicles with their cameras and lidars; its `text` is their `settings.json`. */

@@ -14,10 +14,10 @@ import scala.jdk.CollectionConverters.*
   * more than running most calls, so it is woken once for several. The first call of a queue waits for at most
   * `share` calls of every other connection.
   *
-  * While nothing else can be run, [[takeUrgent]] returns calls that need not wait for the others.
+  * While nothing else can be run, [[takeUrgent]] returns calls that need not wait for other calls.
   *
-  * Any thread may add and forget calls; one thread takes them. The number that waits is bounded by the
-  * server, which lets each connection have a limited number of calls unanswered.
+  * Any thread may add and forget calls; one thread takes them. The server bounds the number of waiting calls
+  * by limiting each connection's unanswered calls.
   */
 final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => Boolean = (_: Call) => false):
   require(share >= batch && batch > 0, s"a batch, $batch, must be positive and within the share, $share")
@@ -116,7 +116,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
         gone.increment()
         place = line.calls.poll()
 
-  /** Moves newly filled queues into the round, and begins a round when the last is over. */
+  /** Moves newly filled queues into the round, and begins a round when the last has ended. */
   private def sort(): Unit =
     var line = came.poll()
     while line != null do

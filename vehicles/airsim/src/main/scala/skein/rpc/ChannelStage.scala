@@ -25,8 +25,8 @@ private[rpc] trait ChannelInput:
   def close(): Future[Done]
 
 /** One channel with all its connections in a single stage, hence on one thread at a time: a call costs one
-  * hop to that thread, calls made during that hop leave in one write, and every decision is
-  * [[ChannelState]]'s. The connections run fused inside this stage.
+  * hop to that thread, calls made during that hop leave in one write, and [[ChannelState]] makes every
+  * decision. The connections run fused inside this stage.
   *
   *   - '''Emits when''' nothing; it has no ports. Requests go to the channel's connections.
   *   - '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its
@@ -185,7 +185,7 @@ private[rpc] final class ChannelStage(
 
       def ignored(what: String): Unit = state.ignored(index, what)
 
-      /** Writes the calls assigned since the last write, together. */
+      /** Writes all calls assigned since the last write together. */
       def flush(): Unit =
         for target <- attempt if toWrite.nonEmpty && target.accepts do
           val now = clock.now()

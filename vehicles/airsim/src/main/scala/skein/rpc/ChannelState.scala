@@ -200,7 +200,7 @@ private[rpc] final class ChannelState(
 
   private def connectionOf(key: Int): Int = Math.floorMod(key, connections.length)
 
-  /** The error of a call that finds no room in a window and may not wait for it; None if it may wait. */
+  /** The error of a call that finds the window full and may not wait; None if it may wait. */
   private def refusal(call: Call): Option[RpcError] =
     val candidates = call.options.key match
       case Some(key) => IndexedSeq(connections(connectionOf(key)))

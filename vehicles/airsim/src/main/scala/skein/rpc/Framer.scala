@@ -72,7 +72,8 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
   private var headerExpected = 0
   private var refusal        = Option.empty[Framed]
 
-  /** Adds the next bytes from the peer. Only after [[next]] has answered [[Framed.NeedsMore]]. */
+  /** Adds the next bytes from the peer. May be called only after [[next]] has returned [[Framed.NeedsMore]].
+    */
   def offer(bytes: ByteString): Unit =
     require(position == segment.length, "the previous segment is not consumed yet")
     segment = bytes.toArrayUnsafe()
@@ -172,8 +173,8 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
 
   private def frameBytesSoFar: Long = earlierBytes + passedBytes + (position - frameStart)
 
-  /** Keeps the segment's part of an incomplete value: large parts by reference, small ones gathered, so that
-    * a peer that sends single bytes does not cost one object for each.
+  /** Keeps the segment's part of an incomplete value: large parts by reference, small parts gathered, so that
+    * single bytes do not cost one object each.
     */
   private def keep(): Unit =
     val length = position - frameStart

@@ -46,7 +46,7 @@ private[rpc] final class Holdings(each: Long, common: Long):
         forced += change
         account(to)
 
-    /** Whether the common part now covers all bytes held beyond the connection's own part. */
+    /** Whether the common part now covers all bytes that the connection holds beyond its own part. */
     def isGranted: Boolean =
       if forced > 0 && beyond.get <= common then forced = 0
       forced == 0

@@ -17,7 +17,7 @@ enum RpcError:
   /** The connection ended before the answer was received. `mayHaveRun`: the request had been sent. */
   case ConnectionLost(address: Address, mayHaveRun: Boolean, reason: String)
 
-  /** The answer is not what was expected: bytes that are no reply, or a result of another type. */
+  /** The answer is not what was expected: bytes that are not reply, or a result of another type. */
   case Malformed(method: String, reason: String)
 
   /** Too many calls are in flight or waiting; the call was not sent. `limit` names the bound. */

@@ -24,5 +24,5 @@ enum RpcEvent:
 
   case UnexpectedReply(id: Long, channel: Channel, connection: Int)
 
-  /** A value that is no reply was received and dropped. */
+  /** A value that is not a reply was received and dropped. */
   case Ignored(what: String, channel: Channel, connection: Int)

@@ -14,7 +14,7 @@ enum RpcMessage:
   case Notification(method: String, params: IndexedSeq[Msg])
   case Reply(id: Long, error: Msg, result: Msg | Received)
 
-  /** A value that is no message but harmless: an array of another length, a map, a number. */
+  /** A value that is not a message but is harmless: an array of another length, a map, a number. */
   case Ignored(what: String)
 
   /** A value that cannot be answered safely; its connection is to be closed. */
@@ -40,7 +40,7 @@ object RpcMessage:
         case length => Right(Ignored(s"an array of $length"))
     case other => Right(Ignored(kindOf(other)))
 
-  /** The id of an encoded request, read without decoding the rest; None if it is no request. */
+  /** The id of an encoded request, read without decoding the rest; None if it is not a request. */
   private[rpc] def requestId(frame: Array[Byte]): Option[Long] =
     def at(i: Int): Int = frame(i) & 0xff
     // An array of four, short or long; a type, which may be any number; an id.

@@ -16,12 +16,12 @@ enum Channel:
   /** Large messages that may wait: images, point clouds. */
   case Bulk
 
-/** The treatment of a call that finds no room in the window. */
+/** What happens to a call when the window is full. */
 enum WhenFull:
   /** The call fails immediately with [[RpcError.Overloaded]]. */
   case Refuse
 
-  /** The call waits in the channel's bounded queue; when that is full too, it fails with
+  /** The call waits in the channel's bounded queue; if the queue is also full, the call fails with
     * [[RpcError.Overloaded]].
     */
   case Wait
@@ -33,7 +33,7 @@ enum WhenFull:
   *   times, when its connection is lost
   * @param key calls with equal keys use one connection and are sent in the order of the calls
   * @param withdrawn when it completes, the answer is no longer awaited: [[RpcError.Timeout]] before the
-  *   timeout is over
+  *   timeout has elapsed
   */
 final case class CallOptions(
     timeout: Span = Span.ofSeconds(5),
@@ -59,8 +59,8 @@ final case class CallOptions(
   *   replies
   * @param strays maximum number of values on a connection, since the last expected reply, that answer no call
   *   of ours; then it is closed as malformed
-  * @param messageTime longest time from a message's first byte to its last; then its connection is closed as
-  *   malformed
+  * @param messageTime maximum time from a message's first byte to its last, after which its connection is
+  *   closed as malformed
   * @param openBytes maximum number of bytes of unfinished messages on all connections together, beyond 1 MiB
   *   on each; a connection whose message finds no room is closed as malformed
   * @param limits limits for one message on [[Channel.Control]] and [[Channel.Sensors]]

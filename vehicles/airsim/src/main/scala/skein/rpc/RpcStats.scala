@@ -8,7 +8,7 @@ import java.util.concurrent.atomic.LongAdder
   * @param sent number of requests written, including those sent again
   * @param late number of replies to calls that had timed out
   * @param unexpected number of replies to no known call
-  * @param ignored number of values that were no replies
+  * @param ignored number of values that were not replies
   */
 final case class RpcStats(
     called: Long,

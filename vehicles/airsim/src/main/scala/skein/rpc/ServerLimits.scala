@@ -20,8 +20,8 @@ import skein.units.*
   * @param heldBytesInCommon memory beyond that, for all connections together. A connection whose requests and
   *   replies hold it is not read until some are answered and taken. One without requests in progress whose
   *   unfinished message exceeds it is closed; a whole request, or a reply, that exceeds it becomes an error
-  * @param strays maximum number of values between two requests that are no messages; beyond it the connection
-  *   is closed. Before the first request, the first such value closes it
+  * @param strays maximum number of values between two requests that are not messages; beyond it the
+  *   connection is closed. Before the first request, the first such value closes it
   * @param messageTime longest time from a message's first byte to its last, while the server waits for it
   * @param replyTime longest time without a peer taking any of its waiting replies
   * @param silence time for which a connection must be silent, with nothing in progress, before a new one may

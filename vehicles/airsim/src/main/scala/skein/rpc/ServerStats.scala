@@ -9,8 +9,8 @@ import java.util.concurrent.atomic.{AtomicLong, LongAdder}
   * @param turnedAway number of connections beyond the limit
   * @param closedWithReason number of connections that ended because of malformed input, a cut message, a
   *   limit or a failure
-  * @param malformed number of connections among `closedWithReason` that sent a value that is no message, or
-  *   exceeds [[FrameLimits]]
+  * @param malformed number of connections among `closedWithReason` that sent a value that is not a message,
+  *   or exceeds [[FrameLimits]]
   * @param overHeld number of connections among `closedWithReason` that reached the memory limit
   * @param tooSlow number of connections among `closedWithReason` that took too long for a message, or to take
   *   replies
@@ -20,8 +20,9 @@ import java.util.concurrent.atomic.{AtomicLong, LongAdder}
   * @param refused number of replies with an error
   * @param lacking number of requests, replies and dropped notifications that were too large for the memory
   *   left
-  * @param ignored number of values that were no messages
-  * @param dropped number of requests taken and not run, because their connection had closed before their turn
+  * @param ignored number of values that were not messages
+  * @param dropped number of accepted requests that were not run because their connection closed before their
+  *   turn
   * @param heldBytes number of bytes held for peers now; see [[ServerLimits.heldBytes]]
   * @param mostHeldBytes the maximum of `heldBytes`
   */

@@ -62,7 +62,7 @@ class BulkSimulation extends munit.FunSuite:
   private def p99(sorted: Vector[Double]): Double = sorted((0.99 * sorted.size).toInt)
 
   test(
-    "over 50 Mbit/s, images delay control by less than 6 ms on their own connection, by far more on control's"
+    "over 50 Mbit/s, images delay control by less than 6 ms on their own connection; by far more on control's"
   ):
     val (alone, _)     = fly(Images.None)
     val (beside, came) = fly(Images.OwnLane)

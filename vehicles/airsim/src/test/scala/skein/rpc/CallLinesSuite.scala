@@ -61,7 +61,7 @@ class CallLinesSuite extends munit.FunSuite:
     assert(served(0) <= 4.1 * served.drop(1).min, served.toSeq)
     assert(served.drop(1).min > 800, served.toSeq)
 
-  test("the calls of a closed connection are dropped and counted, and those of others stay"):
+  test("the calls of a closed connection are dropped and counted; calls of other connections stay queued"):
     val lines = CallLines[String]()
     for connection <- 1L to 2L; i <- 1 to 3 do lines.put(connection, s"$connection-$i")
     assertEquals(lines.take(), Some("1-1"))
@@ -100,7 +100,7 @@ class CallLinesSuite extends munit.FunSuite:
     assertEquals(urgent(), None)
     assertEquals(drain(lines).toSet, Set("read", "move b", "move a"))
 
-  test("an urgent call that was taken in its turn, or forgotten, is not taken again"):
+  test("an urgent call that was already taken in its turn, or was forgotten, is not taken again"):
     val lines = CallLines[String](isUrgent = _ => true)
     lines.put(1, "a")
     lines.put(2, "b")

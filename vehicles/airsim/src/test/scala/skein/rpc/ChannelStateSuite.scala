@@ -239,7 +239,7 @@ class ChannelStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq("after", "second"))
     assertEquals(l.ends.keySet, Set("waiting", "keyed", "later", "fifth"))
 
-  test("pauses between attempts to connect double up to the longest, and start anew after an answer"):
+  test("pauses between attempts to connect double up to the longest, and start again after an answer"):
     val l = channel(connections = 1)
     for _ <- 1 to 8 do l.state.openFailed(0, "refused")
     l.open(0)

@@ -106,7 +106,7 @@ class FramerLaws extends munit.FunSuite:
     assertEquals(framer.heldBytes, 0)
     assertEquals(framer.decodedBytes, frame.length + 3 * 32L + 160)
 
-  test("counts start anew with each message"):
+  test("counts start again with each message"):
     val framer = Framer(FrameLimits(elements = 4, frameBytes = 8))
     val found  = Wire.framed(framer, Seq.fill(100)(ByteString(Wire.pack(Arr(Null, Null, Null)))))
     assertEquals(found.count(_.isInstanceOf[Framed.Complete]), 100)

@@ -49,7 +49,7 @@ class PatienceSuite extends munit.FunSuite:
     for i <- 1 to 1000 do
       assertEquals(patience.watch(forMessage = false, forTaking = i % 31 != 0, forNothing = false), None)
 
-  test("limits may have their smallest values, and no smaller ones"):
+  test("limits accept their smallest allowed values, and nothing smaller"):
     val least = ServerLimits(
       inFlightPerConnection = 1,
       inFlightAssured = 1,

@@ -98,7 +98,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     r.ask(3, "now")
     assertEquals(r.reply(), RpcMessage.Reply(3, Null, Int32(1)))
 
-  test("values that are no messages are counted and the connection survives"):
+  test("values that are not messages are counted and the connection survives"):
     val r = Rig()
     r.ask(0, "now")
     assertEquals(r.reply(), RpcMessage.Reply(0, Null, Int32(1)))
@@ -123,7 +123,7 @@ class ServerConnectionSuite extends munit.FunSuite:
       ByteString(0x94, 1, 2, 0xc0, 0xc0)   -> ""
     )
   do
-    test(s"nothing is obeyed of a connection that begins with ${bytes.map(b => f"$b%02x").mkString(" ")}"):
+    test(s"no request is obeyed on a connection that begins with ${bytes.map(b => f"$b%02x").mkString(" ")}"):
       val r = Rig()
       r.send(bytes ++ ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str("slow"), Arr()))))
       val _ = r.replies.ensureSubscription().expectComplete()

@@ -57,7 +57,7 @@ final class MavlinkChannel(
   /** The earliest time at which a message is due. */
   def nextDue: Option[Span] = due.valuesIterator.minOption
 
-  /** Takes the messages that are due, by vehicle and message number; each is next due one interval later. */
+  /** Takes the messages that are due, as vehicle and message number; each is due again one interval later. */
   def takeDue(now: Span): Vector[(system: Int, id: Int)] =
     val ready = due.iterator.collect { case (key, at) if at <= now => key }.toVector.sorted
     for key <- ready do

@@ -8,7 +8,7 @@ import skein.units.*
   * mission and the answers come out.
   *
   * @param mission the vehicle's mission
-  * @param upload the upload of another mission, which replaces it once all items have been received
+  * @param upload the upload of a new mission, which replaces this one once all its items are received
   * @param home the vehicle's home: items must be near it
   */
 private[autopilot] final case class MissionTransfer(

@@ -36,7 +36,7 @@ object OffboardSetpoint:
   /** Reads a setpoint from a message.
     *
     * @param home the origin of the vehicle's own frame
-    * @return None if it is no setpoint; Left says why it is refused
+    * @return None if it is not a setpoint; Left says why it is refused
     */
   def of(message: Message, home: GeoLocation): Option[Either[String, OffboardSetpoint]] = message match
     case one: SetPositionTargetLocalNed =>
@@ -155,7 +155,7 @@ object OffboardSetpoint:
   extension (move: OffboardSetpoint.Move)
     private def hasPlace = (move.north ++ move.east ++ move.down).nonEmpty
 
-  /** Converts a target to the flight controller's setpoint.
+  /** Converts a target to a setpoint of the flight controller.
     *
     * @param cruise the greatest speed towards positions
     */

@@ -71,7 +71,7 @@ object Parameters:
   /** A waypoint is reached within this distance, m. */
   val AcceptanceRadius = Parameter("NAV_ACC_RAD", 2, 0.2, 200)
 
-  /** Offboard ends this long after the last setpoint, s. */
+  /** Time after the last setpoint at which offboard ends, s. */
   val OffboardLoss = Parameter("COM_OF_LOSS_T", 1, 0.1, 60)
 
   /** Time after which the vehicle disarms when it has landed, or was armed and did not take off, s; negative:

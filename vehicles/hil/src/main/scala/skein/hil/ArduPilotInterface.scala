@@ -80,7 +80,7 @@ final class ArduPilotInterface(sensors: Sensors, from: Span, before: Int = 0) ex
     answered
 
 object ArduPilotInterface:
-  /** The first vehicle's port; each further vehicle's is ten higher. */
+  /** The first vehicle's port; the port of each further vehicle is ten higher. */
   val Port = 9002
 
   /** Whether a datagram is one of ArduPilot's frames. */

@@ -106,7 +106,7 @@ object BetaflightInterface:
   /** Betaflight derives no rate from states this far apart. */
   private val TooFarApart = Span.ofMillis(20)
 
-  /** Greatest real time between these two states, ms: Betaflight derives no rate from half a second on. */
+  /** Maximum real time between these two states, ms: from half a second on, Betaflight derives no rate. */
   private val MostApartRealMs = 400
 
   private[hil] def isPacket(bytes: Array[Byte]): Boolean = bytes.length == ServoLength

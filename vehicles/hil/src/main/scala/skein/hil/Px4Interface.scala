@@ -10,9 +10,9 @@ import skein.vehicle.{Airframe, Setpoint}
   * requests. PX4's clock is the time of the first sensors; it answers each HIL_SENSOR with
   * HIL_ACTUATOR_CONTROLS and waits for the next.
   *
-  * Until the first answer physics follows the clock, because PX4 starts by the sensors' time. From then on,
-  * as long as the answers state lockstep, physics waits for the answer to the newest sensors, whose time it
-  * carries. Sensors sent before the first answer are answered too, later; if each answer counted for the
+  * Until the first answer physics follows the clock, because PX4's start-up uses the sensors' time. From then
+  * on, as long as the answers state lockstep, physics waits for the answer to the newest sensors, whose time
+  * it carries. Sensors sent before the first answer are answered too, later; if each answer counted for the
   * newest sensors, PX4's controls would lag by all of these for the rest of the flight.
   *
   * A PX4 that is silent, or whose answers carry other times, is given up: it is not waited for until it has
@@ -196,7 +196,7 @@ object Px4Interface:
   /** Interval of HIL_SENSOR messages. */
   val Period: Span = Span.ofMillis(4)
 
-  /** The first vehicle's port; each further vehicle's is one higher. */
+  /** The first vehicle's port; the port of each further vehicle is one higher. */
   val Port = 4560
 
   /** MAVLink's component number, as in PX4's plugin for Gazebo. */

@@ -43,7 +43,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     assertEqualsFloat(sensors.last.absPressure, 998.63f, 0.5f)
     assertEqualsFloat(sensors.last.pressureAlt, 122f, 5f)
 
-  test("satellite fixes are sent eight times a second from the first second on, and are 110 ms old"):
+  test("satellite fixes are sent eight times per second from the first second on, and are 110 ms old"):
     val gps = Peer().ticks(3).collect { case one: HilGps => one }
     assertEquals(gps.size, 16)
     assertEquals((gps.head.fixType, gps.head.vel, gps.head.satellitesVisible), (3, gps.head.vel, 10))

@@ -4,7 +4,7 @@ package skein.mavlink
 object CommonDialect:
   val Autopilot1 = 1
 
-  /** A heartbeat's autopilot field when the sender is no autopilot. */
+  /** A heartbeat's autopilot field when the sender is not an autopilot. */
   val NoAutopilot = 8
 
   object Command:

@@ -113,8 +113,8 @@ final class FrameReader(signing: Option[Signing] = None):
           else skip(1)(_.copy(badChecksum = counted.badChecksum + 1))
       case _ => skip(1)(_.copy(garbageBytes = counted.garbageBytes + 1))
 
-  /** Skips a frame whose checksum cannot be computed, if another one follows it or the datagram ends; else
-    * its first byte alone, since it may be none.
+  /** Skips a frame whose checksum cannot be computed, if another follows it or the datagram ends; else only
+    * its first byte, since the bytes may not be a frame.
     */
   private def unknown(all: Array[Byte], at: Int, length: Int, isWhole: Boolean): Step =
     val end = at + length

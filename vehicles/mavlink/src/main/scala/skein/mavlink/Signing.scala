@@ -28,7 +28,7 @@ final class Signing(key: Array[Byte], link: Int, now: () => Long):
     val stamp = link.toByte +: Array.tabulate(6)(index => (newest >> (8 * index)).toByte)
     stamp ++ digest(frame, stamp)
 
-  /** Whether a frame, up to and including its checksum, has a valid signature and is no replay. */
+  /** Whether a frame, up to and including its checksum, has a valid signature and is not a replay. */
   private[mavlink] def accepts(
       frame: Array[Byte],
       signature: Array[Byte],

@@ -10,7 +10,7 @@ class FrameReaderSuite extends munit.FunSuite:
     val sum     = Checksum.Start.add(frame, 1, frame.length).add(50).value
     frame ++ Array(sum.toByte, (sum >> 8).toByte)
 
-  test("a whole frame of either version is recognised at any position, and nothing else is"):
+  test("only whole frames are recognised, of either version and at any position"):
     for bytes <- Seq(beat, older, Array[Byte](1, 2, 3) ++ beat, beat ++ beat.take(5)) do
       assert(FrameReader.isSpoken(bytes))
     for bytes <- Seq(Array.emptyByteArray, beat.take(beat.length - 1), older.init, Array.fill[Byte](100)(0))

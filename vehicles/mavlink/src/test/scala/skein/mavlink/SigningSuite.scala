@@ -10,7 +10,7 @@ class SigningSuite extends munit.FunSuite:
     assertEquals(reader.read(bytes), Vector.empty)
     assertEquals(reader.counts, ReaderCounts(frames = reader.counts.frames, badSignature = 1))
 
-  test("a signed frame is accepted with the right key, and refused with a wrong one or none"):
+  test("a signed frame is accepted with the right key, and refused with a wrong key or without a key"):
     val bytes = FrameWriter(1, 1, Some(signing())).write(message)
     assertEquals(FrameReader(Some(signing())).read(bytes), Vector(Frame(1, 1, 0, message, isSigned = true)))
     refused(FrameReader(Some(signing(Array.fill[Byte](32)(8)))), bytes)

@@ -10,7 +10,7 @@ import skein.units.Decimals.fixed
 
 /** Settings of vehicles controlled over MAVLink.
   *
-  * @param renewEvery interval at which a setpoint is repeated until its action's duration is over; then
+  * @param renewEvery interval at which a setpoint is repeated until its action's duration has elapsed; then
   *   setpoints to stay in place are sent as often, for as long as the link is open. PX4 leaves offboard below
   *   2 Hz
   * @param sampleEvery interval of motion samples that the vehicle is requested to send
@@ -81,8 +81,8 @@ final case class Control(
         Option.when(estimate.newest.isEmpty)("ODOMETRY, or LOCAL_POSITION_NED and ATTITUDE_QUATERNION")
       ).flatten
 
-  /** The reason why the vehicle follows no setpoints: it is disarmed, or in a mode that it was switched to by
-    * others. None if it follows them.
+  /** The reason why the vehicle follows no setpoints: it is disarmed, or someone else switched its mode. None
+    * if it follows them.
     */
   def taken: Option[String] = firmware.toOption.flatMap: own =>
     if !isArmed then Some(s"$name is disarmed")
@@ -143,7 +143,7 @@ final case class Control(
     val numbers = if own.takeoffM.isNaN then Vector.fill(7)(Float.NaN) else Vector.fill(6)(0f) :+ own.takeoffM
     guided(own, now).andThen(_.order(token, Command.Takeoff, now, numbers))
 
-  /** Enters the mode that follows setpoints, if this firmware takes off in it. */
+  /** Enters the mode that follows setpoints, if this firmware takes off in that mode. */
   private def guided(own: Firmware, now: Instant): Step =
     if own != Firmware.Copter || mode == own.offboard then Step(this)
     else enter(Silent, own, own.offboard, now)
@@ -211,7 +211,7 @@ final case class Control(
       ) ++ asked.lastOption
     )
 
-  /** Ends actions whose duration is over, and those whose receipt is overdue. */
+  /** Ends actions whose duration has elapsed, and those whose receipt is overdue. */
   private def ended(now: Instant): Step =
     val (lost, rest) = asked.partition(_.replacedAt.exists(at => now > at + settings.timeout))
     val (done, open) = rest.partition(one => one.replacedAt.isEmpty && now >= one.until)
@@ -224,7 +224,7 @@ final case class Control(
       )
     )
 
-  /** Repeats the setpoint, with a TIMESYNC; without a setpoint, sends a TIMESYNC alone. */
+  /** Repeats the setpoint, with a TIMESYNC; without a setpoint, sends only a TIMESYNC. */
   private def send(now: Instant): Step =
     val at       = now.max(lastSync + Span.ofNanos(1))
     val setpoint =
@@ -392,7 +392,7 @@ object Control:
   /** Token of a request that needs no answer. */
   private[offboard] val Silent = -1L
 
-  /** The action of a vehicle after its action's duration is over. */
+  /** The action of a vehicle after its action's duration has elapsed. */
   private val Stay = Action.Velocity(Vector3.Zero)
 
   private def inMs(span: Span): String = s"${span.toMillis.fixed(0)} ms"

@@ -45,8 +45,8 @@ final class MavlinkLink private (
 
   def control(number: Int): Control = controls(number)
 
-  /** The flight's clock, which is the first vehicle's, against the controller's; None until its first
-    * exchange.
+  /** The relation of the flight's clock, which is the first vehicle's clock, to the controller's clock; None
+    * before the first exchange.
     */
   def clocks: Option[ClockAlignment] = controls(systems.head).clock.map(_.alignment)
 

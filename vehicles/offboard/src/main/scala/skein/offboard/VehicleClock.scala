@@ -3,7 +3,7 @@ package skein.offboard
 import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
 
-/** A vehicle's clock against the controller's, by TIMESYNC.
+/** A vehicle's clock relative to the controller's clock, measured by TIMESYNC.
   *
   * @param latestLeg leg of the newest exchange: the vehicle's time of its answer minus the controller's time
   *   of the request. It contains the clocks' offset
@@ -28,8 +28,8 @@ final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span, exchan
   def stamped[A](value: A, sampledAt: Instant, receivedAt: Instant, shift: Span, doubt: Span): Stamped[A] =
     Stamped(value, sampledAt + shift, (sampledAt - latestLeg - doubt).min(receivedAt), receivedAt)
 
-  /** The shift from this clock's times to another's, with its uncertainty. Both are zero if the two may be
-    * one clock, as for vehicles of one simulator.
+  /** The shift from this clock's times to those of another clock, with its uncertainty. Both are zero if the
+    * two may be one clock, as for vehicles of one simulator.
     */
   def shiftTo(other: VehicleClock): (shift: Span, doubt: Span) =
     val apart = alignment.offset - other.alignment.offset

@@ -51,7 +51,9 @@ class ControlSuite extends munit.FunSuite:
   private def velocities(step: Control.Step): Vector[(Float, Float)] =
     step.messages.collect { case one: SetPositionTargetLocalNed => (one.vx, one.vy) }
 
-  test("a setpoint and a TIMESYNC are sent immediately, then every 100 ms until the action's time is over"):
+  test(
+    "a setpoint and a TIMESYNC are sent immediately, then every 100 ms until the action's time has elapsed"
+  ):
     val sent = known().act(7, forward, Span.ofMillis(250), at(100))
     assertEquals(velocities(sent), Vector((5f, 0f)))
     assertEquals(syncs(sent).size, 1)
@@ -245,7 +247,7 @@ class ControlSuite extends munit.FunSuite:
     assertEquals(found.restarts, 0)
     assert(found.lower <= Span.ofSeconds(1000) && Span.ofSeconds(1000) <= found.upper, found.toString)
 
-  test("times are in the clock that the vehicles share, and with two clocks in the first vehicle's"):
+  test("times are on the clock that the vehicles share, and with two clocks on the first vehicle's clock"):
     val one   = VehicleClock.of(at(0), theirs(20), at(40))
     val same  = VehicleClock.of(at(5), theirs(15), at(35))
     val other = VehicleClock.of(at(0), theirs(520), at(40))

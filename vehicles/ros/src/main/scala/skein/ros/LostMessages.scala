@@ -2,7 +2,7 @@ package skein.ros
 
 import scala.collection.mutable
 
-/** Counts messages of a topic that were lost on their way here, by the sequence numbers that middleware gives
+/** Counts messages of a topic that were lost in transit here, by the sequence numbers that middleware gives
   * to each publisher's messages. Middleware that gives none repeats one number, and nothing counts as lost.
   * One thread adds; any may read. Remembers the newest [[LostMessages.MostPublishers]] publishers.
   */
@@ -15,7 +15,7 @@ private[ros] final class LostMessages:
   /** Adds a message that was received.
     *
     * @param publisher the publisher's identifier, 16 bytes
-    * @param number sequence number of the message among its publisher's
+    * @param number sequence number of the message among all messages of its publisher
     */
   def add(publisher: (Long, Long), number: Long): Unit = newest.get(publisher) match
     case Some(before) =>

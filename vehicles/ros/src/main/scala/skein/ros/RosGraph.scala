@@ -9,7 +9,7 @@ trait RosGraph extends AutoCloseable:
     *
     * @param kind such as `nav_msgs/msg/Odometry`; its package must be installed
     * @param most maximum number of bytes of a message that are handed over; the rest is not copied
-    * @param receive called for each message on the node's thread with its first bytes and its arrival time by
+    * @param receive called for each message on the node's thread with its first bytes and its arrival time on
     *   the system's clock: the middleware's, or else the time at which it was read
     * @return Left if the package is not installed, or ROS 2 rejects the topic, with the reason
     */

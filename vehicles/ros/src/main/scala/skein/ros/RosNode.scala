@@ -10,8 +10,8 @@ import skein.units.{Clock, Instant, Span}
 /** A node of ROS 2: it publishes topics and subscribes to them, as serialized messages. Domain, middleware
   * and security are those of the environment, as for every node (`ROS_DOMAIN_ID`, `RMW_IMPLEMENTATION`).
   *
-  * Messages are received on a thread of its own, in their order. All memory that it takes outside the Java
-  * heap is returned when it is closed.
+  * Messages are received on a thread of its own, in their order. All memory that the node takes outside the
+  * Java heap is freed when it is closed.
   */
 final class RosNode private (
     library: RosLibrary,
@@ -247,8 +247,8 @@ object RosNode:
   private val NumberAt    = 16L
   private val PublisherAt = 40L
 
-  /** Greatest accepted difference between the middleware's clock and this process's; some middleware states
-    * no time.
+  /** Greatest accepted difference between the middleware's clock and this process's clock; some middleware
+    * states no time.
     */
   private val MostApart = Span.ofSeconds(10)
 

@@ -10,8 +10,8 @@ import skein.signal.{ClockAlignment, FastestMessage, Kinematics, Stamped}
 import skein.units.{Clock, Instant, Span}
 
 /** A vehicle behind ROS topics, as a loop's vehicle port: it is read by odometry, and steered by `cmd_vel` in
-  * the frame of the odometry's pose, which is sent again every 50 ms. Once an action is over, or replaced by
-  * hovering, the velocity sent is zero. Not for real aircraft.
+  * the frame of the odometry's pose, which is sent again every 50 ms. Once an action has ended, or replaced
+  * by hovering, the velocity sent is zero. Not for real aircraft.
   *
   * A reading is the first odometry that arrives after the one read before. Its time is the header's stamp,
   * and the clocks are related by [[FastestMessage]].
@@ -41,7 +41,7 @@ final class RosVehicle private[ros] (
   /** Completes when the first odometry has been received. */
   private[ros] def isThere: Future[Unit] = first.future
 
-  /** The clock of the headers against this process's, as known so far. */
+  /** The clock of the headers relative to this process's clock, as known so far. */
   def clocks: Option[ClockAlignment] = synchronized(alignment)
 
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]] = synchronized:
@@ -81,7 +81,7 @@ final class RosVehicle private[ros] (
       for state <- newest; twist <- TwistCommand.of(Action.Hover, state.value) do send(twist)
     Future.successful(Right(true))
 
-  /** Takes odometry. Left says which values are no motion. */
+  /** Takes odometry. Left says which values are not a motion. */
   private[ros] def receive(message: Odometry): Either[String, Unit] =
     TwistCommand.kinematics(message).map: kinematics =>
       val (validAt, now) = (message.header.stamp.instant, clock.now())

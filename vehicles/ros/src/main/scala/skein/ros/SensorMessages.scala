@@ -8,7 +8,7 @@ import skein.units.{Instant, Radians, Quaternion as Rotation, Vector3 as Ned}
 
 /** Images and scans, with their frames, as messages of `sensor_msgs` and `geometry_msgs`. */
 object SensorMessages:
-  /** A part of a topic's or a frame's name: what is no letter, digit or `_` becomes `_`. */
+  /** A part of a topic's or a frame's name: every character except letters, digits and `_` becomes `_`. */
   def token(name: String): String =
     val plain = name.map(letter => if letter < 128 && letter.isLetterOrDigit then letter else '_')
     if plain.headOption.forall(_.isDigit) then s"_$plain" else plain

@@ -125,7 +125,7 @@ object SimulatedSensors:
 
   /** A kind of images of a camera.
     *
-    * @param below path of the topics below the camera's
+    * @param below path of the topics below the camera's path
     */
   private enum Sight(val below: String, val kind: ImageKind, val encoding: Encoding):
     case Colour       extends Sight("", ImageKind.Scene, Encoding.Raw)

@@ -12,7 +12,7 @@ object TwistCommand:
   /** Time after which a command is sent again. */
   val Every: Span = Span.ofMillis(50)
 
-  /** Converts odometry to a motion in NED. Left says which values are no motion. */
+  /** Converts odometry to a motion in NED. Left says which values are not a motion. */
   def kinematics(odometry: Odometry): Either[String, Kinematics] =
     val (at, q) = (odometry.pose.pose.position, odometry.pose.pose.orientation)
     val twist   = odometry.twist.twist

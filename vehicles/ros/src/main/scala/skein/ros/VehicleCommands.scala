@@ -9,7 +9,7 @@ import skein.vehicle.GoTo
 
 /** Converts ROS commands to actions. Left says what was expected, and what was received. */
 private[ros] object VehicleCommands:
-  /** Duration of a velocity after its arrival, by the simulator's clock. */
+  /** Duration of a velocity after its arrival, on the simulator's clock. */
   val VelocityLasts: Span = Span.ofSeconds(0.5)
 
   /** Greatest speed of a vehicle's flight to a pose. */

@@ -24,7 +24,7 @@ class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
     output
 
   for speed <- Seq(1, 4) do
-    test(s"a P controller of rclpy by simulated time flies three vehicles to their goals, at speed $speed"):
+    test(s"a P controller in rclpy, on simulated time, flies three vehicles to their goals, at speed $speed"):
       conclusive:
         val ended = serving(speed)(run("fly_three.py", Seq("30") ++ ServedProcess.Names*): Unit)
         println(ended)

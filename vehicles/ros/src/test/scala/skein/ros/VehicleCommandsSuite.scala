@@ -62,7 +62,7 @@ class VehicleCommandsSuite extends munit.FunSuite:
       Right(Action.Velocity(Ned.Zero, Yaw.Still))
     )
 
-  test("an orientation of zeros sets no heading, and one of any other length sets its heading"):
+  test("a quaternion of zeros sets no heading; one of any other length sets its heading"):
     assertEquals(yaw(Quaternion(0, 0, 0, 0)), Yaw.Still)
     yaw(Quaternion(0, 0, 2, 2)) match
       case Yaw.Towards(heading) => assertEqualsDouble(heading.value, 0, 1e-12)

@@ -54,7 +54,7 @@ private[skein] object Solid:
     *
     * @param origin upper left corner of the upper left cell
     * @param across vector to the next column's corner, divided by the squared length of a cell, so that its
-    *   product with a position is the position's column; `down` likewise for rows
+    *   dot product with a position is the position's column; `down` is the vector for rows
     */
   final class Pattern(val white: Array[Boolean], val origin: Vector3, val across: Vector3, val down: Vector3)
 

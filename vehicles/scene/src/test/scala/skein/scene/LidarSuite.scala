@@ -8,7 +8,9 @@ class LidarSuite extends munit.FunSuite:
   private def scan(lidar: Lidar, at: Placement, moment: Moment = sixty, count: Long = 0) =
     lidar.scan(moment, at, Item.Nothing, Vector3.Zero, count)
 
-  test("AirSim's default lidar sees flat ground in 16 circles, 10,000 points a turn less the last degree"):
+  test(
+    "AirSim's default lidar sees flat ground in 16 circles of 10,000 points per turn, less the last degree"
+  ):
     val points = scan(Lidar(), Placement(Vector3(0, 0, -10)), Moment(Scene.Empty, Vector.empty))
     assertEquals(points.items.toSet, Set(Item.Ground))
     val radii = points.xyz.grouped(3).map(p => math.hypot(p(0), p(1))).toSeq

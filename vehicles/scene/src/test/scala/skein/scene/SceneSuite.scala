@@ -6,7 +6,7 @@ class SceneSuite extends munit.FunSuite:
   private def error(text: String): String =
     SceneFile.parse(text, "my.conf").fold(_.message, scene => fail(s"$scene"))
 
-  test("the scenes of the distribution are read, with distances between a forest's trees"):
+  test("the bundled scenes are read, and the forest's trees are at least 2.9 m apart"):
     assertEquals(SceneFile.named("empty"), Some(Scene.Empty))
     val trees = SceneFile.named("forest").get.objects
     assertEquals(trees.size, 120)

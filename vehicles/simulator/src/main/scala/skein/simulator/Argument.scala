@@ -14,7 +14,7 @@ import upack.*
   *     integer, nor is an integer out of its type's range.
   *   - A string may be sent as str or as bin, which old clients send.
   *   - A map's missing keys keep their defaults and unknown keys are skipped, at any depth; a map with a key
-  *     that is no string, or another kind of value in its place, is refused.
+  *     that is not a string, or another kind of value in its place, is refused.
   *   - A refusal is reported as `std::bad_cast`, without its position.
   *
   * Unlike AirSim's server, this refuses numbers that are not finite, or too large for a 32-bit float
@@ -79,7 +79,7 @@ private[simulator] object Argument:
   given Argument[GeoPoint]    = checked(record(GeoPoint(0, 0, 0))): point =>
     misplaced(point.latitude, point.longitude, point.altitude)
 
-  /** The reason why this is no geographic position; None if it is one. */
+  /** The reason why this is not a geographic position; None if it is one. */
   def misplaced(latitudeDeg: Double, longitudeDeg: Double, altitudeM: Float): Option[String] =
     Option.unless(
       math.abs(latitudeDeg) <= 90 && math.abs(longitudeDeg) <= 360 && math.abs(altitudeM) <= 1e6f

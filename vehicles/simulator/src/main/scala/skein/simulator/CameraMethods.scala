@@ -9,7 +9,7 @@ import upickle.default.writeMsg
 private[simulator] object CameraMethods:
   import ServerMethod.*
 
-  /** Greatest length accepted, mm; larger than any film or lens. */
+  /** Maximum accepted length, mm; larger than any film or lens. */
   private inline val LargestMm = 100_000f
 
   val all: Seq[ServerMethod] = Seq(

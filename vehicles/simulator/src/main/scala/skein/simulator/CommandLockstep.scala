@@ -8,10 +8,9 @@ import skein.units.*
   * neither the machine's load nor the clock's speed changes the flight. At the first stop it stands for
   * [[CommandLockstep.Settling]] of real time, in which nodes handle the messages that queued while it ran.
   *
-  * A command stamped before another one of its vehicle, by whichever topic, is left out: it is late.
+  * A command stamped before another of its vehicle, by whichever topic, is left out: it is late.
   *
-  * It no longer waits if none has arrived for [[CommandLockstep.Patience]] of real time, until the next
-  * command.
+  * If none arrives within [[CommandLockstep.Patience]] of real time, it stops waiting until the next command.
   *
   * @param physics the step of physics, of which the first stop is a whole number after the start
   * @param now the simulator's clock, now at its start
@@ -54,7 +53,7 @@ private[simulator] final class CommandLockstep(step: Span, physics: Span, now: (
   private def goOn(): Unit =
     if !isWaiting then next = next.map(due => if due <= now() then due + step else due)
 
-  /** The first stop: physics has made a whole number of steps then. */
+  /** The first stop, at which physics has made a whole number of steps. */
   private def first: Instant =
     val (one, other) = (step.toNanos, physics.toNanos)
     val common       = one / BigInt(one).gcd(other).toLong * other

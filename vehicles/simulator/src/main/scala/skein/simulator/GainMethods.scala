@@ -3,8 +3,8 @@ package skein.simulator
 import skein.vehicle.{AxisGains, CascadeGains, Pid}
 
 /** Functions that set the gains of a vehicle's flight controller. Each takes the proportional gains of three
-  * axes, then the integral ones, then the derivative ones. All controllers then start anew, as AirSim's do.
-  * Gains outlive a reset.
+  * axes, then the integral ones, then the derivative ones. All controllers then restart, as in AirSim. Gains
+  * outlive a reset.
   */
 private[simulator] object GainMethods:
   import ServerMethod.*

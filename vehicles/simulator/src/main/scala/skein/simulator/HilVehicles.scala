@@ -7,7 +7,7 @@ import skein.units.*
 
 /** The vehicles of a simulation with external autopilots: each autopilot's channel belongs to one vehicle.
   * The simulator's clock stops whenever sensors are due, and continues as the autopilots allow. A vehicle
-  * without an autopilot is AirSim's.
+  * without an autopilot is controlled by AirSim's own firmware.
   */
 private[simulator] final class HilVehicles(simulation: Simulation, settings: HilSettings)
     extends PeerProtocol,

@@ -5,7 +5,7 @@ import skein.units.*
 import skein.vehicle.{PathFollowing, Setpoint}
 
 /** A move in progress. AirSim's calls loop every 20 ms of simulated time: they read the vehicle's state,
-  * renew its goal, and end when done or when their time is over (`MultirotorApiBase`).
+  * renew its goal, and end when done or when their time has elapsed (`MultirotorApiBase`).
   */
 private[simulator] trait Move:
   /** Runs one iteration of AirSim's loop.

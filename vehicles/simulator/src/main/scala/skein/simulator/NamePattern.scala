@@ -44,7 +44,7 @@ private[simulator] object NamePattern:
   def apply(text: String, ignoreCase: Boolean = false): NamePattern =
     if text.length > LongestPattern then
       throw BadArgument(s"a regular expression has at most $LongestPattern characters, not ${text.length}")
-    // RE2/J's quotations are not ECMAScript's.
+    // RE2/J's quotations differ from those of ECMAScript.
     if text.contains("\\Q") then wrong("invalid escape sequence", text)
     val groups = Letter.replaceAllIn(text, "x")
     if depths(groups).max > Deepest then wrong(s"groups nested deeper than $Deepest", text)

@@ -24,7 +24,7 @@ private[simulator] object Travel:
 /** Flies along a path by aiming at a point ahead on it, with a velocity command
   * (`MultirotorApiBase::moveOnPath`).
   *
-  * @param points the first is where the vehicle was at the start
+  * @param points the path's points; the first is the vehicle's position at the start
   */
 final private[simulator] class PathMove private (
     points: Vector[Vector3],

@@ -2,7 +2,7 @@ package skein.simulator
 
 import skein.units.Instant
 
-/** The vehicles of a simulation behind another protocol than AirSim's: bytes of peers go in, bytes for them
+/** The vehicles of a simulation behind a protocol other than AirSim's: bytes of peers go in, bytes for them
   * come out. Not thread-safe.
   */
 private[simulator] trait PeerProtocol:
@@ -13,7 +13,7 @@ private[simulator] trait PeerProtocol:
 
   def leave(channel: Long): Unit
 
-  /** Takes bytes that a peer sent; the simulation has been advanced to the present before. */
+  /** Handles bytes from a peer; the simulation must have been advanced to the present first. */
   def receive(channel: Long, bytes: Array[Byte]): Unit
 
   /** Takes the datagrams that are due for each peer. */

@@ -13,7 +13,7 @@ import skein.link.{Address, FirstBytes, Listening, Places, Transport, TransportE
 import skein.mavlink.FrameReader
 import skein.units.Span
 
-/** The ports of vehicles that speak another protocol than AirSim's.
+/** The ports of vehicles that speak a protocol other than AirSim's.
   *
   * @param streams ports for streams, by the simulator's own transport, which is TCP outside tests
   * @param datagrams ports for datagrams, whatever the transport
@@ -103,10 +103,12 @@ private[simulator] object PeerServer:
   /** Maximum number of pieces that wait for one peer; further ones are dropped. */
   private val Waiting = 256
 
-  /** Time without a message after which the only peer that its port allows makes room for another. */
+  /** Time without a message after which the only peer that its port allows may lose its place to another
+    * peer.
+    */
   private val AloneIdle = Span.ofSeconds(5)
 
-  /** Time without a message after which a peer makes room for another. */
+  /** Time without a message after which a peer may lose its place to another. */
   private val Silence = Span.ofSeconds(5)
 
   /** A stream's first message must be recognised within this many bytes; the longest has 280. */

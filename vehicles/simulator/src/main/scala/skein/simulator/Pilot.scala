@@ -5,7 +5,7 @@ import skein.vehicle.Setpoint
 
 /** An onboard pilot. It is called every 20 ms of simulated time, like an iteration of AirSim's moves.
   *
-  * @return None if it leaves control to others
+  * @return None if it leaves control to other pilots
   */
 private[simulator] trait Pilot:
   def turn(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint]

@@ -68,7 +68,7 @@ private[skein] final case class PlanCall(sequence: Long, moves: Vector[PlannedMo
       Option.unless(function.takes(move.params :+ Str(vehicle)))(s"wrong parameters of ${move.method}")
 
 private[skein] object PlanCall:
-  /** The function's name, which is not one of AirSim's. */
+  /** The function's name, which no function of AirSim has. */
   val Function = "skeinFollowPlan"
 
   /** The functions that move a multirotor, by their names. */

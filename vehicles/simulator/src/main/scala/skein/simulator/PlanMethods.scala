@@ -3,11 +3,11 @@ package skein.simulator
 import skein.units.{Expect, Instant}
 import upack.Str
 
-/** The function that gives a vehicle a plan: moves for several times in one call. It is not one of AirSim's.
-  * It answers immediately and needs no worker, because the vehicle has one move at a time. Plans are
-  * numbered, so that they may arrive over any connection: a plan that is older than the newest has no effect.
-  * A move, a reset or `skeinHoverAt` restarts the numbering. `hover` does not, so that a late plan does not
-  * undo it.
+/** The function that gives a vehicle a plan: moves for several times in one call. AirSim has no such
+  * function. It answers immediately and needs no worker, because the vehicle has one move at a time. Plans
+  * are numbered, so that they may arrive over any connection: a plan that is older than the newest has no
+  * effect. A move, a reset or `skeinHoverAt` restarts the numbering. `hover` does not, so that a late plan
+  * does not undo it.
   */
 private[simulator] object PlanMethods:
   import ServerMethod.*

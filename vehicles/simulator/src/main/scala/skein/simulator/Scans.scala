@@ -5,7 +5,7 @@ import skein.airsim.wire.{LidarData, Pose, Quaternionr, Vector3r}
 import skein.scene.{Bodies, Lidar, Moment, Placement, Scene}
 import skein.units.*
 
-/** The vehicles' lidars. Each takes one scan per revolution of the lidar, by the simulator's clock, with all
+/** The vehicles' lidars. Each takes one scan per revolution of the lidar, on the simulator's clock, with all
   * rays at one instant; requests return the newest. The positions of everything at that instant are stored;
   * rays are cast only when the scan is requested.
   */

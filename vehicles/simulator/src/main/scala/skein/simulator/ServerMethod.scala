@@ -11,18 +11,18 @@ import upickle.default.{Writer, writeMsg}
 private[simulator] enum CallOutcome:
   case Answered(result: Msg | Encoded)
 
-  /** The function throws; `text` is the exception's. */
+  /** The function throws; `text` is the exception's message. */
   case Threw(text: String)
 
   case Flies(vehicle: Int, order: Move.Order)
 
-  /** A long computation that no longer needs the simulation: `work` may run on another thread. */
+  /** A long computation that does not need the simulation any more: `work` may run on another thread. */
   case Draws(work: () => Msg | Encoded)
 
   /** Physics must advance by this span and then stop; then the call is answered. */
   case Steps(span: Span)
 
-/** A function of the simulator's server, with as many parameters as AirSim's.
+/** A function of the simulator's server, with as many parameters as AirSim's function.
   *
   * @param arguments readers of the parameters; each throws [[BadArgument]] if it refuses
   * @param run computes the outcome from the read arguments
@@ -50,7 +50,7 @@ final private[simulator] class ServerMethod(
     def own(values: Tuple): Tuple = Tuple.fromArray(values.toArray.take(arity - 1).map(x => x: Any) :+ last)
     ServerMethod(name, arguments.init ++ read, (simulation, values) => run(simulation, own(values)))
 
-  /** Never throws: a function that fails answers with its exception, as AirSim's do. */
+  /** Never throws: a function that fails answers with its exception, as functions of AirSim do. */
   def apply(simulation: Simulated, params: IndexedSeq[Msg]): CallOutcome =
     try run(simulation, Tuple.fromArray(arguments.iterator.zip(params).map(_.read(_)).toArray[Any]))
     catch

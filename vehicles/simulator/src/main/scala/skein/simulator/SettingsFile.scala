@@ -2,8 +2,8 @@ package skein.simulator
 
 import skein.airsim.{SettingsError, SettingsSection, WorldSettings}
 
-/** An AirSim `settings.json` as the built-in simulator applies it. Each key is obeyed, or the file is refused
-  * because of it, or it is listed as having no effect.
+/** An AirSim `settings.json` as the built-in simulator applies it. Each key takes effect, or is listed as
+  * having none, or causes the file to be refused.
   *
   * @param ignored paths of keys without effect here, in the file's order
   */

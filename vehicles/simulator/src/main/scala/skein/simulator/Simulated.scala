@@ -35,5 +35,5 @@ private[simulator] trait Simulated:
       plan: Vector[(at: Instant, action: Move.Order)]
   ): Unit
 
-  /** Returns all vehicles to their starts and drops all moves, including those that wait. */
+  /** Returns all vehicles to their starts and drops all moves, including queued ones. */
   private[simulator] def reset(): Unit

@@ -110,7 +110,7 @@ final private[simulator] class SimulatedMultirotor(
     */
   def flyBy(autopilot: Option[Setpoint]): Unit = outside = autopilot
 
-  /** Gives control to the API or takes it away. Either way the goal becomes the remote control's, even if the
+  /** Gives control to the API or takes it away. Either way the remote control then sets the goal, even if the
     * API already had control. A vehicle that held its position thus falls: the throttle of an absent remote
     * control is idle, and AirSim assumes that a vehicle at rest under it has landed, so position hold does
     * not catch it either.
@@ -169,7 +169,8 @@ final private[simulator] class SimulatedMultirotor(
     tuned = rotorcraft.tuned(gains)
     state.restartController()
 
-  /** Sets the vehicle's state of motion, in its own frame, bypassing its flight controller. It is in the air.
+  /** Sets the vehicle's state of motion, in its own frame, bypassing its flight controller. The vehicle is
+    * then in the air.
     */
   def setKinematics(kinematics: KinematicsState, at: Instant): Unit =
     val acceleration        = kinematics.linear_acceleration.toVector

@@ -75,8 +75,8 @@ final class SimulatorServer private (
     simulator ! SimulatorServer.Message.Look(answer)
     answer.future
 
-  /** Lets a multirotor perform an action from now on, if the server has an [[Onlooker]]; it takes off, too. A
-    * move that a client has begun ends.
+  /** Lets a multirotor take off and perform an action from now on, if the server has an [[Onlooker]]. A move
+    * started by a client ends.
     *
     * @param vehicle the vehicle's index in the settings
     * @param action the action for the vehicle's present motion, world NED; evaluated every 20 ms of simulated
@@ -202,7 +202,7 @@ object SimulatorServer:
   /** Calls run before other work of the process gets its turn: some 0.5 ms. */
   private val CallsAtOnce = 32
 
-  /** @param work whether a [[Message.Work]] has been sent and not handled */
+  /** @param work whether a [[Message.Work]] was sent but is not yet handled */
   final private class Running(
       simulation: Simulation,
       onlooker: Option[Onlooker],

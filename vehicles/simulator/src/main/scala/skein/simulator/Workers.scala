@@ -49,7 +49,7 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
     var holder     = Option.empty[Claim]
     var handoverAt = Option.empty[Instant]
 
-  /** Adds a lock for one more vehicle; the number of workers stays, as in AirSim. */
+  /** Adds a lock for one more vehicle; the number of workers does not change, as in AirSim. */
   def addVehicle(): Unit = locks += Lock()
 
   /** Whether a request offered now is run immediately. */
@@ -61,7 +61,7 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
 
   /** Takes the next request, if a worker is free for it.
     *
-    * @param isOpen whether there is a worker for every request
+    * @param isOpen whether every request gets a worker
     */
   def take(isOpen: Boolean = false): Option[Job] =
     Option.when((isOpen || busy < limit) && jobs.nonEmpty)(jobs.dequeue())
@@ -69,8 +69,8 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
   /** Removes needless requests that waited for a worker, and returns them. */
   def drop(isNeedless: Job => Boolean): Vector[Job] = jobs.dequeueAll(isNeedless).toVector
 
-  /** Makes the request just taken a move: its worker is held from now on. True: it has the lock and starts.
-    * False: it waits, and the vehicle's current move is to be cancelled.
+  /** Turns the request just taken into a move, which holds its worker from now on. True if it has the lock
+    * and starts; false if it waits, and the vehicle's current move must be cancelled.
     *
     * @param client the client that made the request
     * @param isLeft whether the client has left in the meantime
@@ -120,7 +120,7 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
     race = (race + 5) % 8
     race < 5
 
-  /** The time at which the next lock arrives at its waiting move. */
+  /** The time at which the next waiting move receives its lock. */
   def nextHandover: Option[Instant] =
     var next = Option.empty[Instant]
     for lock <- locks; at <- lock.handoverAt do if next.forall(at < _) then next = lock.handoverAt

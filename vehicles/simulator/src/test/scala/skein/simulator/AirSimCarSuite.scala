@@ -75,7 +75,7 @@ class AirSimCarSuite extends munit.FunSuite:
     assert((seen.velocityNed - Vector3(3, 5, 0)).norm < 0.1, seen)
     assertEqualsDouble(seen.orientation.yawRad, math.atan2(5, 3), 0.02)
 
-  test("a car reaches a position, and stops when the action's time is over"):
+  test("a car reaches a position, and stops when the action's time has elapsed"):
     val (answer, rolling, stood) = driven: drive =>
       import drive.given
       val action = drive.car.act(ahead, Span.ofSeconds(2))

@@ -10,8 +10,8 @@ import skein.rpc.{RpcClient, RpcError, RpcSettings}
 import skein.testing.Unhurried
 import skein.units.*
 
-/** The typed client against the built-in simulator over real sockets, its clock ten times as fast as the
-  * machine's.
+/** The typed client against the built-in simulator over real sockets, with a clock ten times as fast as the
+  * machine's clock.
   */
 class AirSimClientLiveSuite extends munit.FunSuite, Unhurried:
   private given system: ActorSystem = ActorSystem("airsim-client")
@@ -55,7 +55,7 @@ class AirSimClientLiveSuite extends munit.FunSuite, Unhurried:
     assertEquals(done(client.vehicles()), Seq("Evader", "Pursuer"))
     assertEquals(done(client.settings()).vehicles, vehicles)
 
-  flown.test("positions are the world's, whatever the vehicle's own origin"): (_, client) =>
+  flown.test("positions are in the world's frame, whatever the vehicle's own origin"): (_, client) =>
     val pursuer = done(Multirotor.named(client, "Pursuer"))
     assertEquals(pursuer.originNed, start)
     assertEquals(done(pursuer.kinematics()).value.positionNed, start)

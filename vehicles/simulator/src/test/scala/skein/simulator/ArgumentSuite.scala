@@ -16,7 +16,7 @@ class ArgumentSuite extends munit.FunSuite:
 
   private val map = Obj(Str("x_val") -> Float32(1))
 
-  test("a number is an integer or a float, and nothing else"):
+  test("only an integer or a float is accepted as a number"):
     for value <- Seq(Int32(2), Int64(2), UInt64(2), Float32(2), Float64(2)) do
       assertEquals(read[Float](value), Right(2f))
       assertEquals(read[Double](value), Right(2.0))

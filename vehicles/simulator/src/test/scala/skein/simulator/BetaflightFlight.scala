@@ -17,7 +17,7 @@ import skein.units.*
   * @param worstM greatest distance from the position while it was to be held
   * @param updatesPerS motor updates meanwhile, at most one for each state: 500 in a second of the simulator's
   *   clock
-  * @param longestPauseS longest time between two of them, by the simulator's clock
+  * @param longestPauseS longest time between two of them, on the simulator's clock
   * @param track the vehicle's positions, a line every 0.2 s of the simulator's clock
   */
 private final case class BetaflightFlight(
@@ -34,7 +34,7 @@ private final case class BetaflightFlight(
 private object BetaflightFlight:
   /** Flies with the firmware through the interface of `serve --hil betaflight`.
     *
-    * @param holdsS time for which the position is held, by the simulator's clock
+    * @param holdsS time for which the position is held, on the simulator's clock
     * @param speed rate of the simulator's clock relative to the real one
     */
   def fly(firmware: Path, holdsS: Double, speed: Double)(using ActorSystem): BetaflightFlight =

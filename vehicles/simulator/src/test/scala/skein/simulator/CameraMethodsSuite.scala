@@ -19,7 +19,7 @@ class CameraMethodsSuite extends munit.FunSuite:
 
   private def near(a: Vector3, b: Vector3): Unit = assert((a - b).norm < 1e-5, s"$a, expected $b")
 
-  test("cameras look in the direction of their names, also under AirSim's other names"):
+  test("cameras look in the direction that their names state, including AirSim's alternative names"):
     val bench = Bench()
     for (name, direction) <- Seq(
         "front_center"  -> Vector3(1, 0, 0),

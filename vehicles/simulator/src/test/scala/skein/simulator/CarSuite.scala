@@ -27,7 +27,7 @@ class CarSuite extends munit.FunSuite:
     bench.tell("setCarControls", writeMsg(controls), car)
   private def state(bench: Bench): CarState = bench.now[CarState]("getCarState", car)
 
-  test("a car drives where it is steered, by the simulator's clock"):
+  test("a car drives where it is steered, on the simulator's clock"):
     val world = bench()
     assertEquals(state(world).gear, 0)
     drive(world, CarControls(throttle = 0.5f))

@@ -57,7 +57,7 @@ class FiniteSuite extends munit.FunSuite:
       bench.moveTo(10, 10, -10, 5): Unit
 
   for method <- Simulation.methods do
-    test(s"${method.name}: for any numbers, states stay finite"):
+    test(s"${method.name}: for any numeric arguments, states stay finite"):
       val params = SampleCalls.params(method.name)
       for
         extreme <- extremes

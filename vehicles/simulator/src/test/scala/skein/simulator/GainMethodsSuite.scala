@@ -30,7 +30,7 @@ class GainMethodsSuite extends munit.FunSuite:
     )
     assertEqualsDouble(speedAfter(tuned, 30), 5, 0.02)
 
-  test("gains of angle, rate and position change flights, too, and only those of their own vehicle"):
+  test("gains of angle, rate and position also change flights, and affect only their own vehicle"):
     val changes =
       Seq("setAngleLevelControllerGains", "setAngleRateControllerGains", "setPositionControllerGains")
     for change <- changes do
@@ -40,7 +40,7 @@ class GainMethodsSuite extends munit.FunSuite:
       bench.pass(1.5)
       assertNotEquals(bench.position("Evader"), bench.position("Pursuer"), change)
 
-  test("the client's default gains fly as AirSim's own do, and survive a reset"):
+  test("the client's default gains fly like AirSim's own gains, and survive a reset"):
     val bench = hovering
     bench.tell("setVelocityControllerGains", list(0.2, 0.2, 2), list(0, 0, 2), list(0, 0, 0), Str(""))
     assertEqualsDouble(speedAfter(bench, 3), speedAfter(hovering, 3), 0.01)

@@ -117,7 +117,7 @@ class HilVehiclesSimulation extends munit.FunSuite, Unhurried:
       )
     assertEqualsDouble((flown.up - before).toSeconds, 8.5, 0.8)
 
-  test("an autopilot that repeatedly connects, answers once and falls silent slows time little"):
+  test("an autopilot that repeatedly connects, answers once and falls silent hardly slows time"):
     val flown = Flown()
     var comes = 0L
     for _ <- 1 to 20 do

@@ -138,7 +138,7 @@ class ImageSuite extends munit.FunSuite:
       1e-3f
     )
 
-  test("a lidar takes a whole scan of one instant ten times a second, by the simulator's clock"):
+  test("a lidar takes a whole scan of one instant ten times per second, on the simulator's clock"):
     val bench = this.bench()
     place(bench, "A", Vector3(0, 0, -3))
     def scan(name: String) = bench.now[LidarData]("getLidarData", Str(name), Str("A"))

@@ -79,7 +79,7 @@ class InProcessSuite extends munit.FunSuite:
       assert(at.positionNed.z < -4 * up, s"$side, $up, $yaw: $at")
       assert((at.velocityNed - side + Vector3(0, 0, up)).norm < 0.7, s"$side, $up, $yaw: $at")
 
-  test("an action without an end continues, in the world's frame, until another one replaces it"):
+  test("an action without an end continues, in the world's frame, until another replaces it"):
     val flown = Flown()
     val there = Vector3(3, 6, -8)
     flown.inProcess.act(1, _ => Action.Position(there, MetresPerSecond(2), Yaw.Towards(Radians(1))), None)

@@ -13,9 +13,9 @@ import upack.*
 import upickle.default.writeMsg
 
 /** All known attacks on `./skein serve`, simultaneously and for any duration, during the calls of an honest
-  * client that requests a vehicle's state 20 times a second: its waiting times without attackers, with them,
-  * and in the seconds after they had left. A second honest client, of a second `serve` without attackers,
-  * shows what the machine's load alone does to these times.
+  * client that requests a vehicle's state 20 times per second: its waiting times without attackers, with
+  * them, and in the seconds after they had left. A second honest client, of a second `serve` without
+  * attackers, shows what the machine's load alone does to these times.
   *
   * Arguments: the ports of RPC, of an autopilot (`--hil px4`), of MAVLink by UDP (`--mavlink`, which is of
   * another `serve`, for one process refuses both) and of `--view`, each 0 for none; seconds of the attack; a

@@ -5,7 +5,7 @@ import upack.{Bool, Float32, Int32, Str}
 
 class MoveSuite extends munit.FunSuite:
 
-  test("a move answers true when its duration is over"):
+  test("a move answers true when its duration has elapsed"):
     val bench = Bench().hovering(-20)
     val move  = bench.velocityZ(5, 0, -20, 2)
     bench.pass(1.99)
@@ -38,7 +38,9 @@ class MoveSuite extends munit.FunSuite:
     assert(math.abs(overshoot - 1.6) < 0.3, s"overshoot $overshoot m, AirSim's is 1.6 m")
     assert((back - left).norm < 0.1, s"holds at $back, wanted $left")
 
-  test("a duration of zero answers immediately: false for moveByVelocityZ, true for the others"):
+  test(
+    "a duration of zero is answered immediately: with false for moveByVelocityZ, with true for other moves"
+  ):
     val bench = Bench().hovering(-20)
     assertEquals(bench.result(bench.velocityZ(5, 0, -20, 0)), Some(false))
     assertEquals(bench.result(bench.velocity(5, 0, 0, 0)), Some(true))
@@ -50,7 +52,7 @@ class MoveSuite extends munit.FunSuite:
     assertEquals(bench.result(move), Some(true))
     assertEquals(bench.position(), Vector3.Zero)
 
-  test("takeoff climbs to about half a metre below its goal and answers false, as AirSim's does"):
+  test("takeoff climbs to about half a metre below its goal and returns false, as in AirSim"):
     val bench = Bench().ready()
     val move  = bench.call("takeoff", Float32(20), Str(""))
     bench.pass(10)

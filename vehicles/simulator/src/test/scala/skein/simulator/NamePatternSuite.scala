@@ -45,7 +45,7 @@ class NamePatternSuite extends munit.FunSuite:
     assert(!NamePattern("(.*)*" * 60 + "x").matches("a" * 100))
     assert(NamePattern("(.*)*" * 60 + "x").matches("a" * 100 + "x"))
 
-  test("an expression that is too large, or takes too much effort for all names, is refused"):
+  test("an expression that is too large, or too costly for all names, is refused"):
     for text <- Seq(
         "((a{99}){99}){99}",
         "((a{999}\\(){999}\\(){999}",

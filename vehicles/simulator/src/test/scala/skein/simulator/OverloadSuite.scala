@@ -7,7 +7,7 @@ class OverloadSuite extends munit.FunSuite:
   private def burst(bench: Bench, moves: Int): Seq[Long] =
     for i <- 0 until moves yield bench.velocityZ(1, i * 0.1, -20, 4)
 
-  test("a burst of three four-second moves ends at 0, 4 and 8 s"):
+  test("the moves of a burst of three four-second moves end at 0, 4 and 8 s"):
     val bench = Bench(Seq("Evader", "Pursuer")).hovering(-20)
     val moves = burst(bench, 3)
     bench.pass(20)
@@ -88,7 +88,7 @@ class OverloadSuite extends munit.FunSuite:
       assertEquals(moves.map(bench.result), Vector.fill(20)(Some(false)))
       assert(bench.isAnswered(read))
 
-  test("while paused the newest move replaces the older immediately, and no call waits"):
+  test("while paused, the newest move replaces the older one immediately, and no call waits"):
     val bench = Bench().hovering(-20)
     bench.tell("simPause", upack.Bool(true))
     val moves = for i <- 1 to 12 yield bench.velocityZ(1, i * 0.1, -5, 1000)

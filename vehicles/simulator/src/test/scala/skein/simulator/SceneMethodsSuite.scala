@@ -15,7 +15,7 @@ class SceneMethodsSuite extends munit.FunSuite:
     val place = skein.airsim.WorldSettings.DefaultOrigin.locate(ned)
     writeMsg(GeoPoint(place.latitudeDeg, place.longitudeDeg, place.altitude.value.toFloat))
 
-  test("an added vehicle stands at its start in its own frame, and flies beside the others"):
+  test("an added vehicle starts at the origin of its own frame, and flies along with the other vehicles"):
     val bench = Bench()
     assert(bench.now[Boolean]("simAddVehicle", Str("Drone2"), Str("simpleflight"), pose(10, 5, 0), Str("")))
     assert(bench.now[Seq[String]]("listVehicles").contains("Drone2"))

@@ -20,9 +20,9 @@ import upack.{Msg, Null, Str}
   * vehicle's state: fuzzing by method first, then each attack separately. Every row states the honest
   * client's waiting times during the attack, and after the attackers had left.
   *
-  * Three processes, since a greedy client is not in the server's: this one is the server (with unlimited
-  * workers, since endless moves hold AirSim's workers for ever, by its design) and the honest client, the
-  * attackers run in a second.
+  * Three processes, since a greedy client is not in the server's process: this one is the server (with
+  * unlimited workers, since endless moves hold AirSim's workers for ever, by its design) and the honest
+  * client, the attackers run in a second.
   *
   * The actor system is set as the command `serve` sets its own.
   *

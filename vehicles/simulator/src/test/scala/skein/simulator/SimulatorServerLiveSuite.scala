@@ -33,7 +33,9 @@ class SimulatorServerLiveSuite extends munit.FunSuite, Unhurried:
       assert(System.nanoTime() < patience, s"it never came to hold: $what")
       Thread.`yield`()
 
-  test("the waiting calls of a closed connection are counted and not run, and those of others are run"):
+  test(
+    "the waiting calls of a closed connection are counted but not run; calls of other connections are run"
+  ):
     val server                             = start(settings.copy(overload = Overload.Workers(1)))
     val honest                             = client(server)
     def call(method: String, params: Msg*) = honest.call(method, params)

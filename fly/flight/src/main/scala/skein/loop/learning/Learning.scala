@@ -2,7 +2,7 @@ package skein.loop.learning
 
 /** How a policy learns during a flight: anew, or by recorded versions. */
 enum Learning:
-  /** Standard deviation of the exploration noise, as a share of the largest turn. */
+  /** Standard deviation of the exploration noise, as a fraction of the largest turn. */
   def explore: Double
 
   /** Learns by a learner that runs concurrently with the flight.
@@ -13,6 +13,6 @@ enum Learning:
 
   /** Repeats recorded learning.
     *
-    * @param news the updates, by the decision before which they took effect
+    * @param news the updates, keyed by the sequence number of the decision before which they took effect
     */
   case Again(explore: Double, news: Map[Long, Vector[LearnerUpdate]])

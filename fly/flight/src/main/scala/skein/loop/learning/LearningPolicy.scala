@@ -9,7 +9,7 @@ import skein.signal.{NormalQuantile, SplitMix64}
   *
   * @param first decides until the first update
   * @param version makes a policy of other parameters
-  * @param explore the noise's deviation, as a share of the largest action
+  * @param explore the noise's deviation, as a fraction of the largest action
   * @param note called with all updates, and the number of the next decision
   */
 final class LearningPolicy(

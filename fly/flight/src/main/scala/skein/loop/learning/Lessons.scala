@@ -29,7 +29,7 @@ trait Lessons:
 final case class LearnerUpdate(text: String, parameters: Option[Vector[Double]] = None)
 
 /** Lessons by a learner that runs concurrently with the flight: it may be slow, hang or fail, and no decision
-  * waits for it. Of several versions between two decisions the last counts.
+  * waits for it. If several versions arrive between two decisions, only the last is used.
   *
   * @param on executes the learner, slice by slice
   */

@@ -14,7 +14,7 @@ object PlanStage:
   /** The result of a search at its deadline.
     *
     * @param best the best plans of all searches; the initial plans if none has finished a slice
-    * @param slices number of slices each search has finished
+    * @param slices number of slices that each search has finished
     * @param unsearchedS for each vehicle, time since any search finished a slice for it: 0 if one did now,
     *   infinite if none ever did
     */
@@ -56,8 +56,9 @@ object PlanStage:
     * remainder of the last plans, and then decides by the best found. The search never runs on the stream's
     * thread, unless the workers are [[CountedPlanWorkers]].
     *
-    * '''Emits when''' the deadline of an element is over. '''Backpressures when''' a search is under way, or
-    * downstream backpressures. '''Completes when''' upstream completes and the last decision was emitted.
+    * '''Emits when''' the deadline of an element has passed. '''Backpressures when''' a search is in
+    * progress, or downstream backpressures. '''Completes when''' upstream completes and the last decision was
+    * emitted.
     * '''Cancels when''' downstream cancels.
     *
     * @param pose the planning problem, from memory and element: for a constant set of vehicles

@@ -6,7 +6,7 @@ import scala.util.control.NonFatal
 import scala.util.{Failure, Success, Try}
 import skein.planning.{JointPlan, JointPlanner, PlanProblem}
 
-/** Searches plans. Several independent searches work on a problem side by side, so that each result depends
+/** Searches for plans. Several independent searches work on a problem in parallel, so each result depends
   * only on its number of slices.
   */
 trait PlanWorkers extends AutoCloseable:
@@ -84,7 +84,7 @@ final class ThreadedPlanWorkers(threads: Int, begun: (() => Boolean) => PlanThre
       def found: Vector[JointPlan]    = searches.map(_.found)
       def finish(): Vector[JointPlan] = searches.map(_.finish())
 
-  /** Ends the threads; running searches find nothing more. */
+  /** Ends the threads; running searches find no further plans. */
   def close(): Unit = workers.foreach(_.close())
 
 private object ThreadedPlanWorkers:

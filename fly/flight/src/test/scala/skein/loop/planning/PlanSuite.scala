@@ -82,7 +82,7 @@ class PlanSuite extends munit.FunSuite, Optimised:
       val found = CountedPlanWorkers(1, slices).begin(problem, warm).finish().head
       assertEquals((found.slices, found.plans.map(_.slices)), (2 * each, Vector(each, each)))
 
-  test("without any search ever, the time since a search is infinite"):
+  test("before the first search, the time since the last search is infinite"):
     val answers = planned(CountedPlanWorkers(1, 0), ticks = 2).map(_._2.unsearchedS)
     assertEquals(answers, Seq.fill(2)(Vector(Double.PositiveInfinity)))
 

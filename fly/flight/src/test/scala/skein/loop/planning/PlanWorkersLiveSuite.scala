@@ -79,7 +79,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
       Thread.sleep(1)
     assert(searches.flatMap(_.finish()).forall(_.slices > 3))
 
-  workers.test("a search that was ended finds nothing more"): workers =>
+  workers.test("a search that was ended finds no further candidates"): workers =>
     val search = workers.begin(problem(1), warm(problem(1)))
     val found  = search.finish()
     val later  = finished(workers, problem(2))

@@ -19,7 +19,7 @@ import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
 import skein.lanes.policy.LanePolicy;
 
-/** Predicts by a first-order lag. The model is linear: each change of the commanded velocity moves the
+/** Predicts with a first-order lag. The model is linear: each change of the commanded velocity moves the
  * vehicle by itself times t − lag · (1 − e^(−t / lag)), where t is the time left. {@link
  * PredictedLagVehicles} is the variant for worlds with equal times.
  */

@@ -16,7 +16,7 @@ import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.FixedFormula;
 
-/** Predicts by a plant. A step begins at a reading, at the arrival of a command, at each turn, and no later
+/** Predicts with a plant. A step begins at a reading, at the arrival of a command, at each turn, and no later
  * than {@code stepS} after the last. The part of the state that readings lack is simulated from reading to
  * reading. {@code PredictedPlants} is the variant for worlds with equal times. Unlike here, {@code
  * skein.vehicle.PlantModel} also begins a step at a command that repeats the one in effect.
@@ -114,7 +114,7 @@ final class ForecastPlants implements ForecastVehicles {
     return lanes.inSpace() ? LaneObservation.IN_SPACE : LaneObservation.READ;
   }
 
-  /** Corrects the simulated state by a reading. */
+  /** Corrects the simulated state with a reading. */
   private void correct(float[] read, float[] into) {
     correct.inputs(count, read(), read, LaneVehicles.SEEN_X);
     correct.outputs(count, into, 0);

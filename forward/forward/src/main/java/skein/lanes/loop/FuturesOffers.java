@@ -32,7 +32,7 @@ final class FuturesOffers extends LaneOffers {
   /** Number of periods whose tasks are stored; a power of two. */
   private final int ring;
 
-  // Of tasks, by agent and slot, from the start of their own step: begin, and end with an offer.
+  // Of tasks, indexed by agent and slot, from the start of their own step: begin, and end with an offer.
   private final int[][][] beginAt, end;
 
   /** The n latest ends of all earlier tasks, the latest first, in grains from the start of the last drawn
@@ -49,7 +49,7 @@ final class FuturesOffers extends LaneOffers {
   /** For each vehicle, the delay of a task's request, then of its answer. */
   private final int[][] drawn;
 
-  /** The oldest period with offers that may be pending, and the next period to draw. */
+  /** The oldest period whose offers may still be pending, and the next period to draw. */
   private int oldest, next;
 
   // By agent: the next offer and the one after it; and the step and the begin of the next one's task.
@@ -75,7 +75,7 @@ final class FuturesOffers extends LaneOffers {
     // A decision waits at most for the answer to the previous command.
     double waitsS = 2 * maxDelayS + timing.steering().handoverS() + timing.steering().minIntervalS();
     ahead = 1 + rowsAhead + (int) Math.ceil(waitsS / periodS);
-    // A task may wait for one that waits for another one.
+    // A task may wait for one that waits for another.
     ring = Integer.highestOneBit(2 * (ahead + (int) Math.ceil(3 * taskS / periodS) + 4) - 1);
     most = vehicles * timing.asking().window();
     drawn = new int[2 * vehicles][WORLDS];
@@ -213,7 +213,7 @@ final class FuturesOffers extends LaneOffers {
     return true;
   }
 
-  /** Computes when the tasks of an agent's offers have read each vehicle; draws their delays again. */
+  /** Recomputes, by drawing their delays again, when the tasks of an agent's offers read each vehicle. */
   private void read(int agent) {
     delays.drawInTurn(taken, places, agent, (long) row * periodGrains, goesOn, drawn);
     for (int v = 0; v < vehicles; v++) {

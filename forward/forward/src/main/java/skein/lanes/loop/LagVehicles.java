@@ -29,10 +29,11 @@ import skein.vehicle.ReducedModel;
  * commands, plus, for each pending command from the time it takes effect, its change times its step response:
  * s(t) = t − lag·(1 − r(t)) for the position and 1 − r(t) for the velocity, where r(t) = exp(−t / lag). Since
  * r(end − at) = exp(−end / lag) · growth(at), one exponential serves all commands. A world's results depend
- * on its own commands alone, to the bit: the commands of other worlds only decide whether zeros are added.
+ * only on its own commands, to the bit: the commands of other worlds only decide whether zeros are added.
  *
  * <p>{@link PlantFlights} simulates an equal vehicle for every loop. This second implementation exists for
- * {@code stream}, where it reaches 100 million agent-steps a second; {@code PlantFlights} reaches 54 million.
+ * {@code stream}, where it reaches 100 million agent-steps per second; {@code PlantFlights} reaches 54
+ * million.
  */
 public final class LagVehicles extends LaneVehicles {
   private static final float FUTURE = 1e9f;
@@ -50,7 +51,7 @@ public final class LagVehicles extends LaneVehicles {
       LACK_X = OWN + 2 * WORLDS,
       LACK_Y = OWN + 3 * WORLDS;
 
-  /** Sampling times of the readings, s; and the share of a velocity error that remains at them. */
+  /** Sampling times of the readings, s; and the fraction of a velocity error that remains at them. */
   private static final int END = OWN + 4 * WORLDS, DECAY = OWN + 5 * WORLDS;
 
   /** The last commanded velocity, whether or not it has taken effect. */
@@ -86,8 +87,9 @@ public final class LagVehicles extends LaneVehicles {
   private int[] nearFrom;
   private float[] nearAge, nearYounger, nearAged;
 
-  /** Of each number of periods: their duration, s, and the share of a velocity error that remains after
-   * it. */
+  /** For each number of periods: their duration, s, and the fraction of a velocity error that remains after
+   * it.
+   */
   private final float[] rowsS, remains;
 
   /** Whether the powers of e fit into floats if commands are pending for up to {@code longestS}. */

@@ -80,7 +80,7 @@ public abstract class LaneAgents {
   /** The forecast that predicts the readings; null if decisions use the readings themselves. */
   public final LaneForecast forecast;
 
-  /** Time since the vehicle's previous decision, s. */
+  /** Time since this vehicle's previous decision, s. */
   public final float[] elapsedS = new float[WORLDS];
 
   /** Time of the last decision; and the number of spans of 2^28 grains to add to the time since, or {@link
@@ -157,8 +157,9 @@ public abstract class LaneAgents {
 
   /** Decides in all worlds; fills {@link #decidedNow}.
    *
-   * @param all the controllers, by vehicle, with their vehicles' readings
-   * @param readAt sampling times of the present readings, by vehicle; maintained only if {@link #needsAges}
+   * @param all the controllers, indexed by vehicle, with their vehicles' readings
+   * @param readAt sampling times of the present readings, indexed by vehicle; maintained only if {@link
+   *     #needsAges}
    */
   public abstract void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt);
 
@@ -173,7 +174,7 @@ public abstract class LaneAgents {
     if (row % Math.max(1, (1 << LONG) / periodGrains) == 0) drawNear();
   }
 
-  /** Moves stored times that are long past closer to the present. */
+  /** Moves stored times in the distant past closer to the present. */
   private void drawNear() {
     IntVector begin = IntVector.broadcast(INTS, now), past = IntVector.broadcast(INTS, -1);
     for (int i = 0; i < WORLDS; i += LANES) {
@@ -422,7 +423,7 @@ public abstract class LaneAgents {
     }
   }
 
-  /** Makes the new command the last one, in worlds where one is sent. */
+  /** Makes the new command the last command, in worlds where one is sent. */
   protected final void tell(
       LaneVectors vectors, float[] cos, float[] sin, Directions told, Directions toldBefore) {
     IntVector none = IntVector.broadcast(INTS, NONE);

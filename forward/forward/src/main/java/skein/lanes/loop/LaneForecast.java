@@ -19,7 +19,9 @@ public final class LaneForecast {
   private final ForecastVehicles[] vehicles;
   private final LaneVehicles[] read;
 
-  /** The predictions for the last decision, by vehicle, in the layout of {@link ForecastVehicles#predict}. */
+  /** The predictions for the last decision, indexed by vehicle, in the layout of {@link
+   * ForecastVehicles#predict}.
+   */
   private final float[][] predicted;
 
   private int row, laidRow;
@@ -81,7 +83,7 @@ public final class LaneForecast {
       tracks[v].arrived.take(vectors, whose, v, asked, made, received, delays);
   }
 
-  /** Updates the forecast by the readings of a period, after the last {@link #enter} of that period.
+  /** Updates the forecast with the readings of a period, after the last {@link #enter} of that period.
    *
    * @param joinedAt set to {@link #dueGrains} in worlds where all vehicles have been read, else to {@link
    *   LaneOffers#NONE}

@@ -33,7 +33,7 @@ public abstract class LaneOffers {
   /** Whether an offer goes to all vehicles, or else to one. */
   final boolean together;
 
-  /** Number of later periods whose offers a round may contain. */
+  /** Number of later periods whose offers may be in a round. */
   final int rowsAhead;
 
   public int beat;
@@ -91,7 +91,7 @@ public abstract class LaneOffers {
 
   /** Whether no world has a time in a slot.
    *
-   * @param times the times, by vehicle, slot and world
+   * @param times the times, indexed by vehicle, slot and world
    */
   static boolean isEmpty(int[][][] times, int slot) {
     for (int[][] each : times) if (isBefore(each[slot], NONE)) return false;

@@ -291,7 +291,7 @@ public final class LaneViews {
     else stayIrregular(world);
   }
 
-  /** Whether one world is regular in a step, by the criteria of {@link #ask}. */
+  /** Whether one world is regular in a step, according to the criteria of {@link #ask}. */
   private boolean isRegular(int world, int step) {
     int[][] to = reached[step % ROWS], nextTo = reached[(step + 1) % ROWS];
     int end = last[step % ROWS][world];

@@ -219,7 +219,7 @@ public class LoopEye extends CameraTrackerLanes {
       for (int i = some.first[k], end = i + LANES; i < end; i++) if (takes[i] > n) keep(n, i);
   }
 
-  /** Stores the result of a world's n-th image of this pass. */
+  /** Stores the result of the n-th image that a world takes in this pass. */
   public void keep(int n, int world) {
     int image = taken[n][world], to = image * IMAGE * WORLDS + world;
     for (int number = 0; number < IMAGE * WORLDS; number += WORLDS) images[to + number] = shown[world + number];

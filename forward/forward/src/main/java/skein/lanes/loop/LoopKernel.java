@@ -117,7 +117,7 @@ public final class LoopKernel {
       }
   }
 
-  /** Ends the worlds that are over by the readings of the decisions of this round. */
+  /** Ends the worlds that have ended by the readings of the decisions of this round. */
   private void mayEnd(int row) {
     double rowS = row * periodS;
     float[] nowS = scores.nowS(), sinceS = scores.sinceS();

@@ -17,9 +17,9 @@ import skein.simd.BoundFunction;
 import skein.simd.LaneCall;
 import skein.vehicle.Plant;
 
-/** Vehicles that move by a {@link Plant}, whose commands take effect at different times in each world. A
- * piece is one step of the plant; {@link PlantPieces} defines its stored components. Before the first command
- * the vehicle rests. The scalar reference is {@code skein.forward.PlantVehicle}.
+/** Vehicles that move according to a {@link Plant}, whose commands take effect at different times in each
+ * world. A piece is one step of the plant; {@link PlantPieces} defines its stored components. Before the
+ * first command the vehicle rests. The scalar reference is {@code skein.forward.PlantVehicle}.
  */
 public final class PlantFlights extends LaneFlights {
   private final int firstOfState;

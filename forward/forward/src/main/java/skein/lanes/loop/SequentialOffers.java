@@ -112,7 +112,7 @@ final class SequentialOffers extends LaneOffers {
     }
   }
 
-  /** Makes the second round the next one in worlds whose next round is over.
+  /** Makes the second round the next one in worlds whose next round has ended.
    *
    * @return whether some world needs another round
    */

@@ -26,7 +26,7 @@ public final class LaneObservation {
 
   private static final float[] ZEROS = new float[WORLDS];
 
-  /** Offsets of the opponent's readings and of this vehicle's, by row. */
+  /** Offsets of the opponent's readings and of this vehicle's, indexed by row. */
   public final float[][] opponent = new float[READ][], own = new float[READ][];
 
   public final int[] opponentAt = new int[READ], ownAt = new int[READ];

@@ -8,7 +8,7 @@ import jdk.incubator.vector.FloatVector;
 import skein.lanes.policy.Directions;
 import skein.vehicle.PlantModel;
 
-/** Predicts by a first-order lag. The model is linear: a prediction is the reading's position, plus its
+/** Predicts with a first-order lag. The model is linear: a prediction is the reading's position, plus its
  * velocity times a factor, plus each pending command times its own factor; the timetable has the factors. The
  * scalar reference is {@link PlantModel} without drag.
  */

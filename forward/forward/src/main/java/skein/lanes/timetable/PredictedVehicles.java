@@ -25,7 +25,7 @@ public abstract class PredictedVehicles {
   /** Adds a reading to the forecast, if the model's state contains more than a reading.
    *
    * @param read the readings
-   * @param sent the commands, by slot
+   * @param sent the commands, indexed by slot
    * @param from the index, for the first world, of the previous reading; negative if there is none
    * @param reading the index, for the first world, of this reading
    * @param propagation the steps from the previous reading to this one
@@ -35,7 +35,7 @@ public abstract class PredictedVehicles {
   /** Predicts from a reading.
    *
    * @param read the readings, to which the predictions are added
-   * @param sent the commands, by slot
+   * @param sent the commands, indexed by slot
    * @param reading the index of the reading, for the first world
    * @param into the index of the prediction, for the first world
    * @param propagation the steps of the prediction

@@ -11,7 +11,7 @@ public abstract class TimetableAgents {
 
   public final TimetableVehicles vehicles;
 
-  /** Decided directions, or velocities divided by the vehicles' speed, by slot. */
+  /** Decided directions, or velocities divided by the vehicles' speed, indexed by slot. */
   public final Directions headings;
 
   public TimetableAgents(TimetableVehicles vehicles) {
@@ -33,7 +33,7 @@ public abstract class TimetableAgents {
 
   /** Decides in all worlds.
    *
-   * @param all agents, by vehicle
+   * @param all agents, indexed by vehicle
    * @param views all views of the timetable; that of the decision begins at {@code view}
    * @param known the index, for the first world, of the opponent's last known heading in a duel
    * @param before the index of the vehicle's previous heading, and {@code after} that of the decided one
@@ -64,7 +64,7 @@ public abstract class TimetableAgents {
     throw new UnsupportedOperationException("a vehicle without eyes");
   }
 
-  /** Updates the estimate by an image, in all worlds.
+  /** Updates the estimate with an image, in all worlds.
    *
    * @param isOlder whether it was taken before the last one that became known
    */

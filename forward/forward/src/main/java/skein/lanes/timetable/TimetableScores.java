@@ -20,7 +20,7 @@ public interface TimetableScores {
     return false;
   }
 
-  /** Ends the worlds in which the flight is over, given these readings.
+  /** Ends the worlds in which the flight has ended, given these readings.
    *
    * @param view the index of the newest readings
    * @param sinceS time since the first decision, s

@@ -5,7 +5,7 @@ import skein.lanes.policy.Directions;
 import skein.lanes.policy.VehicleNumbers;
 
 /** The vehicles of one role in many worlds, simulated by a {@link Timetable}: events happen simultaneously in
- * all worlds, so all that depends on time alone is a constant of the timetable, computed by a corresponding
+ * all worlds, so all that depends only on time is a constant of the timetable, computed by a corresponding
  * {@link EventClock}.
  */
 public abstract class TimetableVehicles extends TimetableReadings {
@@ -39,7 +39,7 @@ public abstract class TimetableVehicles extends TimetableReadings {
     startZ[world] = (float) agent.altitudeDownM();
   }
 
-  /** Sets where a world's vehicle starts from now on. */
+  /** Sets where a world's vehicle starts in all later episodes. */
   public final void place(int world, VehicleNumbers numbers) {
     startX[world] = numbers.northM();
     startY[world] = numbers.eastM();

@@ -56,8 +56,8 @@ private[lanes] object CoastPredictor extends LanePredictor, Propagator:
     Propagation(Array.empty, Array.empty, legs.iterator.map(_.span.toSeconds).sum.toFloat, 1)
 
 /** Predicts a first-order lag, by [[PredictedLagVehicles]] with these factors: for a reading, the time for
-  * which its velocity moves the vehicle, and the share of that velocity that remains; for each command, the
-  * time for which it moves the vehicle, and the share of its velocity that is reached.
+  * which its velocity moves the vehicle, and the fraction of that velocity that remains; for each command,
+  * the time for which it moves the vehicle, and the fraction of its velocity that is reached.
   */
 private[lanes] final class LagPredictor(val model: ReducedModel) extends LanePredictor:
   def deadTimeS: Double                                = model.deadTimeS

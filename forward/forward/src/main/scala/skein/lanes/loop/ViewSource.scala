@@ -6,7 +6,7 @@ import skein.lanes.timetable.StandingStill
 /** The views of one world under the `stream` loop, in order, including requests that are overtaken, late,
   * failed, or held back by a full window. Views do not depend on decisions, so the loop's own joining
   * computes them ahead. [[LaneViews]] computes the regular views of many worlds with SIMD, and uses this
-  * class for the others. Mutable.
+  * class for irregular views. Mutable.
   *
   * @param ahead periods within which the requests of a regular view are answered
   */
@@ -41,7 +41,7 @@ private[lanes] final class ViewSource private (
 
   def controllers: Array[Controller] = Array.empty
 
-  /** Begins at a request when all requests before are answered and joined, if there were any. */
+  /** Starts at a request, once all earlier requests, if any, are answered and joined. */
   def begin(worldKey: Int, worldLink: TabledDelays, first: Int): Unit =
     link.delays = worldLink
     world.start(worldKey, LoopObserver.Nobody, first)
@@ -51,7 +51,7 @@ private[lanes] final class ViewSource private (
     java.util.Arrays.fill(sampledAt, Long.MinValue)
     begin(first)
 
-  /** Moves to the next view, or to the flight's end. */
+  /** Advances to the next view, or to the flight's end. */
   def next(): Unit =
     isJoined = false
     while !isJoined && world.nextNs <= endNs do handle(world.next())

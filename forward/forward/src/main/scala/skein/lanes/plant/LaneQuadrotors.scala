@@ -42,7 +42,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
 
   def use(vehicles: Int): Unit = steps.foreach(_.use(vehicles))
 
-  /** Makes a vehicle hover, settled, under the command to hold this position. */
+  /** Lets a vehicle hover at rest under the command to hold this position. */
   def hover(place: Int, goalNed: Vector3): Unit =
     if goalNed != heldNed then
       heldNed = goalNed

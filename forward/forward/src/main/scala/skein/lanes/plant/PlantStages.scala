@@ -81,7 +81,7 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
       .map((node, i) => node -> trace.input(Kept + i))
       .toMap
 
-  /** Stored values that a later step would compute from the command alone, at some cost. */
+  /** Stored values that a later step would otherwise compute from only the command, at some cost. */
   private val ofCommand =
     Trace.earliest(ofState)(command.contains).filter(node => node.op.isDear && !ofState.contains(node))
 

@@ -6,7 +6,7 @@ import skein.policy.PolicyFormula.Motion
 import skein.units.Expect
 
 /** The decision of one of two opponents, if it is a heading at the vehicle's own speed and at the altitude of
-  * its start, and depends on the difference of the two readings alone: a [[PolicyFormula]] with its inputs
+  * its start, and depends only on the difference of the two readings: a [[PolicyFormula]] with its inputs
   * replaced by those of [[OpponentFormula.In]].
   *
   * @param heading the commanded heading
@@ -72,7 +72,7 @@ private[policy] object OpponentFormula:
         .toLeft(())
     yield OpponentFormula(formula, trace, nodes.head, nodes.tail)
 
-  // Inputs that are none of these are numbered from here on while the graph is searched for differences.
+  // Inputs other than these are numbered from here on while the graph is searched for differences.
   private final val Other = 1 << 20
 
   private def placeOf(input: PolicyInput, self: Int): Option[Int] = input match

@@ -9,10 +9,10 @@ import skein.units.Expect
 /** SIMD decisions of two opponents that command headings: each decides by the difference of the two readings
   * ([[OpponentFormula]]), and yields a direction, not a velocity. This is faster than [[TeamLanes]].
   *
-  * @param forms the policies' forms, by vehicle
+  * @param forms the policies' forms, indexed by vehicle
   * @param agents the vehicles: their speeds, first headings and cameras; if one has a camera, their starts
   *   too
-  * @param withEffort whether a vehicle's effort is computed, by vehicle
+  * @param withEffort whether a vehicle's effort is computed, indexed by vehicle
   */
 private[lanes] final case class OpponentLanes private (
     forms: Vector[PolicyLanes],
@@ -42,7 +42,7 @@ private[lanes] object OpponentLanes:
 
   /** The SIMD code of two opponents; None unless they are two opponents that command headings.
     *
-    * @param efforts whether a vehicle's effort is computed, by vehicle
+    * @param efforts whether a vehicle's effort is computed, indexed by vehicle
     * @param isPredicted whether readings are predicted
     * @return Left says why SIMD does not support a camera
     */

@@ -212,7 +212,7 @@ private[skein] object PolicyLanes:
 
   private val known = Recent[(AnyRef, Int, Boolean), Forms[Policy, Form]](most = 256)
 
-  /** After this number of refused policies of a class, all of the class count as refused. */
+  /** After this number of refused policies of one class, every policy of that class counts as refused. */
   private val MostRefused = 16
 
   /** The SIMD code of a policy, or why there is none. Compiled once for each form.

@@ -72,8 +72,8 @@ private[lanes] final class TeamLanes private (
       number => own(Own.Parameters + number)
     )
 
-  /** By vehicle: the commanded velocity, north and east; cosine and sine of its heading, or anything where it
-    * is not needed; in space the vertical part ([[PolicyFormula.Vertical]]); and the next memory.
+  /** For each vehicle: the commanded velocity, north and east; cosine and sine of its heading, or anything
+    * where it is not needed; in space the vertical part ([[PolicyFormula.Vertical]]); and the next memory.
     */
   val outputs: Vector[Vector[Node]] = Vector.tabulate(count): self =>
     val by     = angles(self)
@@ -154,8 +154,8 @@ private[lanes] final class TeamLanes private (
       field == 2 || field == 3
     )))
 
-  /** By vehicle: whether it needs ages of readings, commands of others, or the time until its command takes
-    * effect.
+  /** For each vehicle: whether it needs ages of readings, commands of other vehicles, or the time until its
+    * command takes effect.
     */
   val asksMore: Vector[Boolean] = sources.map(_.exists:
     case _: (Source.Age | Source.KnownCos | Source.KnownSin) | Source.ActsIn => true
@@ -170,7 +170,7 @@ private[lanes] final class TeamLanes private (
   /** Whether some policy may command its vehicle's yaw. */
   val turns: Boolean = formulas.exists(_.turns)
 
-  /** Whether all decide by positions, velocities, time and their own heading alone. */
+  /** Whether all decisions use only positions, velocities, time and the vehicle's own heading. */
   private val isPlain: Boolean = !inSpace && formulas.forall(_.memory.isEmpty) && sources.flatten.forall:
     case Source.Cos | Source.Sin | Source.Elapsed | _: (Source.Parameter | Source.Shared) => true
     case _                                                                                => false
@@ -284,7 +284,7 @@ private[lanes] object TeamLanes:
               .map(_ => TeamLanes(formulas, assignment, inSpace))
     forms(Team(policies, assignment))
 
-/** Subexpressions shared by several expressions, which depend on the first inputs alone.
+/** Subexpressions shared by several expressions, which depend only on the first inputs.
   *
   * @param nodes the subexpressions that are worth computing once
   */

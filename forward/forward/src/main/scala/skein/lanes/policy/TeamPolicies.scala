@@ -13,13 +13,13 @@ private[lanes] trait TeamPolicies:
   /** Whether decisions need more than the readings and the vehicles' own decision times. */
   def needsMore: Boolean
 
-  /** The camera of each vehicle that knows its one opponent by a camera alone. */
+  /** The camera of each vehicle that knows its one opponent only through a camera. */
   def eyes: Map[Int, SensorModel]
 
   /** The reason why a GPU does not support such a team; None if it does. */
   def refusedByGpu: Option[String]
 
-  /** Number of candidates with shared episodes that are simulated in the time of one. */
+  /** Number of candidates with shared episodes that can be simulated in the time of one. */
   def sideBySide: Int
 
   /** The values that distinguish a vehicle's policy from others of its form. */

@@ -137,7 +137,7 @@ private[lanes] final class ScoreLanes private (
 
   private def startsS(number: Int): Double = if hasEnd then 0 else judged(number).fromS
 
-  /** The scores that begin anew at their time in worlds that have not ended by then, in the order of these
+  /** The scores that restart at their time in worlds that have not ended by then, in the order of these
     * times: of a shorter flight, all of it counts.
     */
   val renewed: Vector[Int] =

@@ -30,7 +30,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   private val hasShare = judged.indices.map(lanes.hasShare).toArray
   private val renewed  = lanes.renewed.toArray
 
-  /** How many of [[renewed]] have begun anew. */
+  /** How many of [[renewed]] have restarted. */
   private var begun = 0
 
   for case (Judged(_, OfMoment.FirstWithin(limit), _), number) <- judged.zipWithIndex do
@@ -152,7 +152,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
 
   def hasEnd: Boolean = ending != null
 
-  /** Whether the flight was over in a world, by an end of its own. */
+  /** Whether the flight had ended in a world by the scenario's own end condition. */
   def hasEnded(world: Int): Boolean =
     lanes.ending.exists(ending => kept(ending.place * worlds + world) < Float.PositiveInfinity)
 
@@ -167,7 +167,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   def placeReadings(vehicle: Int, array: Array[Float], from: Int): Unit =
     if hasEnd then ending.show(vehicle, array, from)
 
-  /** Ends the worlds in which the flight is over at [[nowS]], by the readings that were set. */
+  /** Ends the worlds in which the flight has ended at [[nowS]], by the readings that were set. */
   def end(): Unit = ending.call.apply()
 
   /** Sets the arrays of a vehicle's positions, by world, for [[score]] without a view. */
@@ -203,7 +203,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
       i += 1
     stage.shown.call.apply()
 
-  /** Begins a score anew in all worlds that have not ended before a time. */
+  /** Restarts a score in all worlds that have not ended before a time. */
   private def renew(number: Int, timeS: Float): Unit =
     counts(number) = 0
     val ended = lanes.ending.get.place * worlds

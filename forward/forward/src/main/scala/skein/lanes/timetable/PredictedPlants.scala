@@ -4,12 +4,12 @@ import java.util.Arrays
 import skein.lanes.plant.{PlantCorrection, PlantLanes, StagedFlight}
 import skein.lanes.policy.Directions
 
-/** Predicts by a plant. For each command, the propagation has the number of steps that end under it, and the
-  * numbers of the time after the last step ([[skein.lanes.plant.PlantStages]]). If readings lack a part of
-  * the state, that part is simulated from reading to reading. The scalar reference is
+/** Predicts with a plant. For each command, the propagation has the number of steps that end under it, and
+  * the numbers of the time after the last step ([[skein.lanes.plant.PlantStages]]). If readings lack a part
+  * of the state, that part is simulated from reading to reading. The scalar reference is
   * [[skein.vehicle.PlantModel]], in space [[skein.vehicle.SpatialModel]].
   *
-  * @param correction corrects the state by a reading
+  * @param correction corrects the state with a reading
   * @param speedMps speed of a command of length 1
   */
 private[lanes] final class PredictedPlants(
@@ -82,7 +82,7 @@ private[lanes] final class PredictedPlants(
     else if lanes.inSpace then flight.lookInSpace(seenX, seenY, seenVx, seenVy, seenZ, seenVz, into)
     else flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
 
-  /** Corrects the simulated state by a reading. */
+  /** Corrects the simulated state with a reading. */
   private def take(read: TimetableReadings, reading: Int, into: Array[Float], at: Int): Unit =
     correct.input(count, read.seenX, reading)
     correct.input(count + 1, read.seenY, reading)

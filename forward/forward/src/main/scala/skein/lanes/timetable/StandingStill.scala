@@ -9,7 +9,7 @@ private[lanes] object StandingStill:
   /** An engagement of this number of vehicles. Roles and rivals are arbitrary, since they have no effect on
     * times.
     *
-    * @param eyes cameras of vehicles in a duel, by vehicle
+    * @param eyes cameras of vehicles in a duel, indexed by vehicle
     */
   def engagement(vehicles: Int, durationS: Double, eyes: Map[Int, SensorModel] = Map.empty): Engagement =
     Engagement(

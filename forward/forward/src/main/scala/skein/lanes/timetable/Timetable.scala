@@ -61,7 +61,7 @@ private[skein] object Timetable:
   /** The timetable of a world of this key, for as many vehicles as models.
     *
     * @param models of the vehicles
-    * @param eyes the cameras, by vehicle; only for two vehicles
+    * @param eyes the cameras, indexed by vehicle; only for two vehicles
     * @param tellsMore see [[Timetable.more]]; not for two vehicles that decide by
     *   [[skein.lanes.policy.OpponentLanes]]
     * @param end how the flight may end before its duration
@@ -91,7 +91,7 @@ private[skein] object Timetable:
     case predictive: LoopTiming.Predictive => predictive.copy(predictor = ConstantVelocity)
     case other                             => other
 
-  /** Further inputs of decisions, by decision, then by vehicle.
+  /** Further inputs of decisions, indexed by decision, then by vehicle.
     *
     * @param headings slots of each vehicle's last known commanded heading
     * @param agesS ages of the readings, s
@@ -129,7 +129,7 @@ private final class TimetableCompiler(
   private val headings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.decisions(vehicle) + 1))
   private val clocks   = models.map(_.clock()).toArray
 
-  /** Readings used by decisions; the others are used by scores, which need positions alone. */
+  /** Readings used by decisions; the others are used by scores, which need only positions. */
   private val decidedUpon =
     Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
 

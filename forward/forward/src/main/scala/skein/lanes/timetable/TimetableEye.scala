@@ -43,7 +43,7 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutA
     detect(ours.seenX, ours.seenY, oursAt, theirs.seenX, theirs.seenY, theirsAt, images(image))
     if times(at + 3) == 0 then Arrays.fill(images(image), 0, WORLDS, 0f)
 
-  /** Updates the estimate by an image.
+  /** Updates the estimate with an image.
     *
     * @param isOlder whether it was taken before image `last`, which was added before it
     */

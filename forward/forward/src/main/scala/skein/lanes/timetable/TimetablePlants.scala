@@ -5,9 +5,9 @@ import skein.forward.RolloutAgent
 import skein.lanes.plant.{PlantLanes, StagedFlight}
 import skein.lanes.policy.Directions
 
-/** Vehicles that move by a [[skein.vehicle.Plant]]. Their clock represents a time by the number of steps that
-  * end before it, and by the numbers of the time since the last step, as [[skein.lanes.plant.PlantStages]]
-  * needs them. The scalar reference is `skein.forward.PlantVehicle`.
+/** Vehicles that move according to a [[skein.vehicle.Plant]]. Their clock represents a time by the number of
+  * steps that end before it, and by the numbers of the time since the last step, as
+  * [[skein.lanes.plant.PlantStages]] needs them. The scalar reference is `skein.forward.PlantVehicle`.
   *
   * @param amongClimbers whether commands and readings have a vertical part, even if the plant has none
   */

@@ -14,7 +14,7 @@ class LaneQuadrotorsSuite extends munit.FunSuite:
     val angle = 0.9 * vehicle + 0.35 * turn
     ((speed * math.cos(angle)).toFloat, (speed * math.sin(angle)).toFloat)
 
-  test("the kernel flies as the scalar quadrotor does, within 5 mm and 5 mm/s after 10 s of turns"):
+  test("the kernel's flight stays within 5 mm and 5 mm/s of the scalar quadrotor's after 10 s of turns"):
     val kernel = LaneQuadrotors.of(Quadrotor.AirSim).fold(fail(_), identity)
     val states = Array.tabulate(vehicles)(v => Quadrotor.AirSim.hovering(Vector3(v, -v, downM(v))))
     for v <- 0 until vehicles do kernel.hover(v, Vector3(v, -v, downM(v)))

@@ -36,7 +36,9 @@ class ImageSourceSuite extends munit.FunSuite:
     (name, link)  <- links
     agent         <- 0 to 1
   do
-    test(s"a camera $what over $name, vehicle $agent: images are the scalar engine's, to the nanosecond"):
+    test(
+      s"a camera $what over $name, vehicle $agent: images equal those of the scalar engine, to the nanosecond"
+    ):
       val source = ImageSource(model, agent, DurationS)
       var older  = 0
       for seed <- 1 to 3 do

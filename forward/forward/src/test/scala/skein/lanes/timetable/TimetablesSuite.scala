@@ -4,7 +4,7 @@ class TimetablesSuite extends munit.FunSuite:
   private def made(numbers: Int): Timetable =
     Timetable(1, Array.empty, 1, Array.ofDim(numbers), Array.empty, Array.empty, 0, 0)
 
-  test("of episodes that are used in rotation and do not all fit, some are still found in the cache"):
+  test("if episodes are used in rotation and do not all fit, some are still found in the cache"):
     val timetables = Timetables(mostBytes = 100 * made(10).bytes)
     var times      = 0
     for _ <- 1 to 20; episode <- 1 to 150 do

@@ -51,7 +51,7 @@ private[lanes] abstract class GpuFlightKernel(
 
   protected def moreBytes: Int = 0
 
-  /** Number of results in addition to the scores: efforts, in the order in which they are judged. */
+  /** Number of results in addition to the scores: the efforts, in the order in which they are scored. */
   protected def efforts: Int = 0
 
   /** For each side, the sets of values that define the policies of candidates, concatenated, and the index of

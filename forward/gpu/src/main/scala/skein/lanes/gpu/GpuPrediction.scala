@@ -28,7 +28,7 @@ private[lanes] trait GpuPrediction:
 private[lanes] object GpuPrediction:
   type Kind = (Ptx, RolloutAgent) => GpuPrediction
 
-  /** The kind of prediction that a loop needs; None if the loop does not predict.
+  /** The kind of prediction that a loop needs; None for a loop that does not predict.
     *
     * @return Left says why the GPU does not support it
     */

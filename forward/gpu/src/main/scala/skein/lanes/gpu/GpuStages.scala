@@ -34,7 +34,7 @@ private[lanes] final class GpuStages(
 
   /** Begins the next step under a command.
     *
-    * @param time register of each value that represents the time since the begin of the present step
+    * @param time register of each value that represents the time since the start of the present step
     */
   def act(north: Int, east: Int, time: Int => Int): Unit = kept.take(write(stages.act, north, east, time))
 
@@ -44,7 +44,7 @@ private[lanes] final class GpuStages(
 
   /** Position and, if requested, velocity during the present step.
     *
-    * @param time register of each value that represents the time since the begin of the step
+    * @param time register of each value that represents the time since the start of the step
     */
   def look(withVelocity: Boolean, time: Int => Int): Vector[Int] =
     write(if withVelocity then stages.look else stages.position, Nowhere, Nowhere, time)

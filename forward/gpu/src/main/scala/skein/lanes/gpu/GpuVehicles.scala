@@ -38,7 +38,7 @@ private[lanes] object GpuVehicle:
       QuadrotorLanes.of(quadrotor.quadrotor).map(lanes => GpuQuadrotor(_, _, _, _, lanes))
     case _ => Left("the GPU does not know the vehicle")
 
-/** A vehicle that moves by a plant's [[PlantStages]]. */
+/** A vehicle that moves according to a plant's [[PlantStages]]. */
 private[lanes] final class GpuPlant(
     code: Ptx,
     agent: RolloutAgent,
@@ -85,7 +85,7 @@ private[lanes] final class GpuPlant(
 
   private def timed(record: GpuRecord)(number: Int) = record.time(1 + number)
 
-/** A vehicle that moves by the steps of [[QuadrotorLanes]], like [[TimetableQuadrotors]]. */
+/** A vehicle that moves according to the steps of [[QuadrotorLanes]], like [[TimetableQuadrotors]]. */
 private[lanes] final class GpuQuadrotor(
     code: Ptx,
     agent: RolloutAgent,

@@ -24,7 +24,7 @@ public interface Environment {
   RuntimeException blocked(String call);
 
   /**
-   * Called before a task is handed to a {@code scala.concurrent.ExecutionContext}; throws if the context's
+   * Called before a task is passed to a {@code scala.concurrent.ExecutionContext}; throws if the context's
    * own threads would run it outside virtual time.
    */
   void submitted(Object executionContext);

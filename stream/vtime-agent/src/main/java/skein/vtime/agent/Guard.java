@@ -4,8 +4,8 @@ package skein.vtime.agent;
 public interface Guard {
 
   /**
-   * Called on the sender's thread before a message enters an actor's mailbox; throws if that thread is
-   * foreign.
+   * Called on the sender's thread before a message enters an actor's mailbox; throws if the thread is outside
+   * virtual time.
    */
   void delivered();
 }

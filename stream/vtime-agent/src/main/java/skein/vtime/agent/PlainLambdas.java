@@ -11,7 +11,7 @@ import java.util.stream.IntStream;
  * Makes the lambdas of a class file ordinary ones, which are no longer {@link java.io.Serializable}.
  *
  * <p>Scala links each lambda by {@code LambdaMetafactory.altMetafactory}. An ahead-of-time cache of JDK 25
- * contains only lambdas that are linked by {@code metafactory}; all others are generated anew at each start.
+ * contains only lambdas that are linked by {@code metafactory}; all others are generated again at each start.
  * Only the bootstrap methods are edited, by which lambdas are linked: no code, and so no stack map frame.
  */
 final class PlainLambdas {
@@ -121,8 +121,8 @@ final class PlainLambdas {
   }
 
   /**
-   * Whether the lambda needs nothing of {@code altMetafactory}. A bridge of the lambda's own type is for
-   * reflection alone, by structural types.
+   * Whether the lambda needs nothing of {@code altMetafactory}. A bridge of the lambda's own type is only for
+   * reflection, by structural types.
    *
    * @param arguments the arguments' indices: type of the method, implementation, type of the lambda, flags;
    *     the number of bridges, and their types

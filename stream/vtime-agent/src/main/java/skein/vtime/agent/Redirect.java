@@ -125,7 +125,7 @@ public final class Redirect {
     return environment == null ? real : environment.random();
   }
 
-  /** A seed, in place of the one that a generator made without a seed would choose. */
+  /** The seed for a generator created without a seed, in place of one that it would choose. */
   public static long seed() {
     return random(ThreadLocalRandom.current()).nextLong();
   }

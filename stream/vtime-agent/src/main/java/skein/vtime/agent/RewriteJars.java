@@ -43,7 +43,7 @@ public final class RewriteJars {
     }
   }
 
-  /** Rewrites a jar; one without any class to rewrite stays as it is, and is not compressed again. */
+  /** Rewrites a jar; a jar without any class to rewrite is kept as it is, and is not compressed again. */
   private static void rewrite(Path jar, Rewriter rewriter, ClassLoader classes) {
     try {
       var rewritten = jar.resolveSibling(jar.getFileName() + ".rewritten");

@@ -72,7 +72,7 @@ final class Rewriter implements ClassFileTransformer {
   /** A shared kill switch calls its streams in the order of these objects' identity hash codes. */
   private static final String KILL_SWITCH_LISTENER = "org/apache/pekko/stream/TerminationSignal$Listener";
 
-  /** Scala's generator: without a seed it makes one of Java's. */
+  /** Scala's generator, which without a seed creates a generator of Java. */
   private static final String SCALA_RANDOM = "scala/util/Random";
   private static final String UNSEEDED = "java/util/Random.<init>()V";
 

@@ -82,5 +82,5 @@ import skein.vtime.{VirtualTime, VirtualTimeException}
     Seq(stopped(Thread.sleep(10)), stopped(Thread.sleep(10, 5)), stopped(TimeUnit.SECONDS.sleep(1)))
   println(Seq(read(clocks), read(draws), read(draws), sleeps.mkString(";")).mkString("|"))
 
-/** Calls the constructor that the agent redirects as its own superclass's. */
+/** Calls the constructor, which the agent redirects like a call of its own superclass's constructor. */
 private final class Derived extends java.util.Random

@@ -24,7 +24,7 @@ private[skein] enum ImageType:
 
 /** One image of an answer.
   *
-  * @param image_data_uint8 a PNG file if `compress`, else three bytes a pixel (blue, green, red), rows from
+  * @param image_data_uint8 a PNG file if `compress`, else three bytes per pixel (blue, green, red), rows from
   *   the top, without gaps; empty if `pixels_as_float`
   * @param image_data_float one value per pixel, rows from the top; empty unless `pixels_as_float`
   * @param camera_position the camera's position in the frame of its vehicle, NED, m

@@ -79,7 +79,7 @@ final class CdrReader private (body: ByteBuffer):
   private[message] def rest: Int = body.remaining
 
 private[message] object CdrReader:
-  /** Bytes that state the encoding, before the message. */
+  /** Bytes before the message that state its encoding. */
   val HeaderBytes = 4
 
   /** @throws CdrError if the bytes begin with another encoding */

@@ -10,7 +10,7 @@ private[render] trait Layer:
 private[render] object Layer:
   val Sky: Int = -1
 
-  /** One colour for each face; three bytes a pixel: blue, green, red. */
+  /** One colour for each face; three bytes per pixel: blue, green, red. */
   final class Flat(view: View, surfaces: Surfaces, sky: Int, rgbOf: (Solid.Face, Int) => Int) extends Layer:
     val bytes: Array[Byte] = new Array[Byte](view.width * view.height * 3)
 
@@ -20,7 +20,7 @@ private[render] object Layer:
     def fill(face: Int, row: Int, from: Int, until: Int): Unit =
       paint(bytes, (row * view.width + from) * 3, until - from, if face == Sky then sky else colours(face))
 
-  /** The faces' own colours and painted patterns; three bytes a pixel: blue, green, red. */
+  /** The faces' own colours and painted patterns; three bytes per pixel: blue, green, red. */
   final class Lit(view: View, surfaces: Surfaces, sky: Int) extends Layer:
     private val flat = Flat(view, surfaces, sky, (face, _) => face.rgb)
 

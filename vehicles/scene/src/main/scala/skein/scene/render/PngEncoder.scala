@@ -11,8 +11,7 @@ import java.util.zip.CRC32
   */
 object PngEncoder:
 
-  /** @param bgr three bytes a pixel: blue, green, red; rows from the top
-    */
+  /** @param bgr three bytes per pixel: blue, green, red; rows from the top */
   def encode(bgr: Array[Byte], width: Int, height: Int): Array[Byte] =
     require(bgr.length == width * height * 3, s"${bgr.length} bytes for $width × $height pixels")
     val out = ByteArrayOutputStream(bgr.length / 16 + 256)

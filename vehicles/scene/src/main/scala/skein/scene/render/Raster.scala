@@ -31,7 +31,7 @@ enum Kind:
 
 /** An image's values: rows from the top, without gaps. */
 enum Raster:
-  /** Three bytes a pixel: blue, green, red. */
+  /** Three bytes per pixel: blue, green, red. */
   case Bytes(bgr: Array[Byte])
 
   case Numbers(values: Array[Float])

@@ -3,9 +3,8 @@ package skein.scene.render
 import java.util.Arrays
 
 /** Decides which face is visible at each pixel. Row by row, it passes the edges of faces from left to right;
-  * the nearest open face is visible until it ends, another one begins, or one behind intersects it. So the
-  * cost depends on the number of edges, not of pixels, and visibility is exact whatever the order of the
-  * faces.
+  * the nearest open face is visible until it ends, another begins, or one behind intersects it. So the cost
+  * depends on the number of edges, not of pixels, and visibility is exact whatever the order of the faces.
   */
 final private[render] class Sweep(view: View, surfaces: Surfaces):
   import surfaces.{bottom, first, spans, top}
@@ -57,7 +56,7 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
       left(face) = spans(at)
       right(face) = spans(at + 1)
       inverse(face) = surfaces.c(face) + surfaces.b(face) * (row + 0.5) + surfaces.a(face) * 0.5
-      // The order of the previous row is nearly this row's.
+      // The order of the previous row is nearly that of this row.
       var j = i
       while j > 0 && left(active(j - 1)) > left(face) do
         active(j) = active(j - 1)
@@ -98,8 +97,8 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
 
   private def inverseAt(face: Int, x: Int): Double = inverse(face) + surfaces.a(face) * x
 
-  /** The visible open face at this pixel; of equally near faces, the one added first. Closes faces that have
-    * ended.
+  /** The visible open face at this pixel; among equally near faces, the one added first. Closes faces that
+    * have ended.
     */
   private def nearestAt(x: Int): Int =
     var best   = Layer.Sky
