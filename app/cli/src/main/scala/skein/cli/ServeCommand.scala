@@ -49,7 +49,7 @@ final case class ServeOptions(
         "drift=1.5/60s (of the position, slowly varying), dropout=2%, outage=1s/20s"
     )
     sensors: Option[String],
-    @arg(doc = "seed of gusts and of errors of readings")
+    @arg(doc = "seed of every random choice, which are gusts and errors of readings")
     seed: Long = 1,
     @arg(doc =
       "speaks MAVLink too, as PX4's simulation does: UDP to 14550 for a ground station, and to " +

@@ -62,7 +62,8 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(rows.map(_(0).str).toSeq, Seq("climbing:8", "paper-pursuer", "climbing:8"))
     val policy = PolicyFile.read(folder.resolve("policy.conf").toString).fold(fail(_), identity)
     assertEquals(policy.text.split(' ').takeRight(2).toSeq, Seq("turnRad=0.0", "climbMps=2.0"))
-    val flight = "fly --clock virtual --loop stream --link vpn --duration 6s --learn-version 10".split(' ').toSeq
+    val flight =
+      "fly --clock virtual --loop stream --link vpn --duration 6s --learn-version 10".split(' ').toSeq
     val flown  = folder.resolve("flown")
     val beside = Ran.of(Main.run(flight ++ Seq("--learn", folder.toString, "--out", flown.toString)))
     assertEquals(beside.status, 0, beside.said)

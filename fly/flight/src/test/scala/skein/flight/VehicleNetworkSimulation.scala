@@ -56,15 +56,14 @@ class VehicleNetworkSimulation extends munit.FunSuite, TemporaryFolders, Optimis
   for loop <- loops do
     folder.test(
       s"${loop.label}: equal seeds give equal flights, different seeds do not, and a recording replays"
-    ):
-      folder =>
-        val flight = settings(loop, "range:60m,loss:10%/4,vpn", scenario = PaperDuel(pairs = 2))
-        val flown  = fly(flight)
-        assertNotEquals(fly(flight, seed = 2).digest, flown.digest)
-        val file = flight.plans.head.file(folder)
-        assert(flown.writeTo(file).isRight)
-        val replayed = Replayed.of(file).fold(fail(_), identity)
-        assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
+    ): folder =>
+      val flight = settings(loop, "range:60m,loss:10%/4,vpn", scenario = PaperDuel(pairs = 2))
+      val flown  = fly(flight)
+      assertNotEquals(fly(flight, seed = 2).digest, flown.digest)
+      val file = flight.plans.head.file(folder)
+      assert(flown.writeTo(file).isRight)
+      val replayed = Replayed.of(file).fold(fail(_), identity)
+      assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
 
   test("a message carries its sender's reading, arrives after the link's delay, and is used in decisions"):
     val recording = fly(settings(LoopKind.Stream, "constant:80ms", scenario = Surround())).recording

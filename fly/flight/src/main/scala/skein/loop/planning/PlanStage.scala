@@ -58,8 +58,7 @@ object PlanStage:
     *
     * '''Emits when''' the deadline of an element has passed. '''Backpressures when''' a search is in
     * progress, or downstream backpressures. '''Completes when''' upstream completes and the last decision was
-    * emitted.
-    * '''Cancels when''' downstream cancels.
+    * emitted. '''Cancels when''' downstream cancels.
     *
     * @param pose the planning problem, from memory and element: for a constant set of vehicles
     * @param decide the next memory and the decision, from memory, element, problem and result
