@@ -68,9 +68,9 @@ final case class FlightOptions(
     )
     plant: Option[String],
     @arg(doc =
-      "errors of the vehicles' readings, such as position=0.1,velocity=0.05,heading=0.02 (standard deviations in m, " +
-        "m/s, rad), drift=1.5/60s (of the position, slowly varying), dropout=2%, outage=1s/20s; with --simulator, those " +
-        "of its serve --sensors"
+      "errors of the vehicles' readings, such as position=0.1,dropout=2%: position, velocity, heading (standard " +
+        "deviations in m, m/s, rad), drift=1.5/60s (of the position, slowly varying), dropout, outage=1s/20s; with " +
+        "--simulator, those of its serve --sensors"
     )
     sensors: Option[String],
     @arg(doc =

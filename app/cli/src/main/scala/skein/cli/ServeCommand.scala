@@ -45,8 +45,8 @@ final case class ServeOptions(
     )
     plant: String = "airsim",
     @arg(doc =
-      "errors of readings, such as position=0.1,velocity=0.05,heading=0.02 (standard deviations in m, m/s, rad), " +
-        "drift=1.5/60s (of the position, slowly varying), dropout=2%, outage=1s/20s"
+      "errors of readings, such as position=0.1,dropout=2%: position, velocity, heading (standard deviations in m, " +
+        "m/s, rad), drift=1.5/60s (of the position, slowly varying), dropout, outage=1s/20s"
     )
     sensors: Option[String],
     @arg(doc = "seed of every random choice, which are gusts and errors of readings")

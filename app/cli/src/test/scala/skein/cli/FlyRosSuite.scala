@@ -43,7 +43,11 @@ class FlyRosSuite extends munit.FunSuite, TemporaryFolders:
       ),
       ("cars", possible ++ Seq("--scenario", "convoy"), "expected multirotors alone, got the car"),
       ("images", possible ++ Seq("--images", "front_center@5"), "expected no --images"),
-      ("a scene", possible ++ Seq("--scene", "forest"), "--scene and --plant are for the built-in simulator")
+      (
+        "a scene",
+        possible ++ Seq("--scene", "forest"),
+        "--scene, --plant and --sensors are for the built-in simulator"
+      )
     )
   do
     test(s"$what is refused with the reason"):
