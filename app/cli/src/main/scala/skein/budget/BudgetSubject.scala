@@ -92,7 +92,7 @@ final class TeamSubject(
 
   /** Simulates the paused loop, which waits for every answer, so that delays do not matter. */
   def truth(episodes: Int): Either[String, Double] =
-    val each   = if named.sensors.isEmpty then 1 else episodes
+    val each   = named.pausedEpisodes(episodes)
     val paused = flown.paused.batch(threads.min(each)).fly(Worlds(of(atRest), Vector(DelayTable.none), each))
     Right(RunningStats.of(each)(objective.value(paused, _, durationS)).mean)
 

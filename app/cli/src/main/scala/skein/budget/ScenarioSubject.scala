@@ -97,7 +97,7 @@ final class FlownSubject private (
   def cellEpisodes(links: Vector[LatencyDistribution]): Int = effort.cellEpisodes
 
   def truth(episodes: Int): Either[String, Double] =
-    val each             = if question.conditions.sensors.isEmpty then 1 else episodes
+    val each             = question.conditions.pausedEpisodes(episodes)
     val (missing, flown) = InParallel
       .map(Vector.range(0, each), question.threads)(value(None, _).map(_.getOrElse(Double.NaN)))
       .partitionMap(identity)

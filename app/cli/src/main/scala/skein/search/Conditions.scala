@@ -52,6 +52,11 @@ final case class Conditions(
   def noise: Either[String, Option[SensorNoise]] =
     Expect.each(sensors)(SensorNoise.parse).map(_.headOption).left.map("--sensors: " + _)
 
+  /** Number of episodes over which the paused loop is averaged, of these: it has no delays, and differs from
+    * episode to episode only by errors of readings.
+    */
+  def pausedEpisodes(episodes: Int): Int = if sensors.isEmpty then 1 else episodes
+
   /** The delays of a link between the controller and this number of vehicles.
     *
     * @return Left says what was expected and what was given
