@@ -230,8 +230,7 @@ class Measure:
 class Series:
     """A quantity over time: the report draws it, and measures reduce it.
 
-    Searches fly with SIMD by series of positions and `elapsed_s` alone that are reduced by `mean`, `rms`, `sd`, `least`
-    or `most`.
+    Searches fly with SIMD by series of positions and `elapsed_s` alone.
 
     Attributes
     ----------
@@ -280,6 +279,10 @@ class Series:
     def first_positive(self, name: str) -> Measure:
         """First time above 0, s."""
         return self._reduced(name, "first-positive")
+
+    def stays_positive(self, name: str) -> Measure:
+        """Time from which it stays above 0 until the end, s; no value if it ends otherwise."""
+        return self._reduced(name, "stays-positive")
 
     def _reduced(self, name: str, by: str, last_s: Any = None, after_s: Any = None) -> Measure:
         if last_s is not None and after_s is not None:

@@ -42,7 +42,7 @@ final case class OverTheRidge(
   override def series: Vector[Series]    = Vector(view, apart)
   override def measures: Vector[Measure] = Vector(
     view.least("lowest view"),
-    view.timeWhere("out of view")(_ < 0),
+    view.timeBelow("out of view", 0),
     apart.most("furthest apart"),
     Measure("over after", "s")(tracks =>
       tracks.instants.find(now => tracks.vehicles.forall(tracks.northM(_)(now) > goal - 3)).map(tracks.timeS)

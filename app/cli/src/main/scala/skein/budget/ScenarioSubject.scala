@@ -104,7 +104,9 @@ final class FlownSubject private (
     missing.headOption.toLeft(RunningStats.of(each)(flown).mean)
 
   private def value(link: Option[LatencyDistribution], episode: Int): Either[String, Option[Double]] =
-    over(link)(episode).map(WholeFlights.sum(question.objective.measures, _))
+    over(link)(episode).map(
+      WholeFlights.sum(question.objective.measures, _, question.conditions.durationS)
+    )
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
     val done = AtomicLong()

@@ -24,6 +24,7 @@ final class WholeFlights private (
     val engine: Engine,
     val effort: Effort,
     val blockEpisodes: Int,
+    durationS: Double,
     fly: (Scenario, Int) => Either[String, Tracks]
 ):
   /** An episode's objective value.
@@ -34,7 +35,7 @@ final class WholeFlights private (
     val measures = scenario.measures.map(measure => measure.name -> measure).toMap
     val terms    = objective.measures.map((weight, measure) => (weight, measures(measure.name)))
     fly(scenario, episode).map(
-      WholeFlights.sum(terms, _).getOrElse(objective.direction.sign * WholeFlights.Never)
+      WholeFlights.sum(terms, _, durationS).getOrElse(objective.direction.sign * WholeFlights.Never)
     )
 
   /** Number of episodes per second, for people. Simulates two to measure it. */
@@ -55,9 +56,13 @@ object WholeFlights:
     */
   val Never = 1e6
 
-  /** @return the weighted sum of a flight's measures; None if it never reaches one of them */
-  def sum(terms: Vector[(Double, Measure)], flown: Tracks): Option[Double] =
-    val values = terms.flatMap((weight, measure) => measure.of(flown).map(weight * _))
+  /** @return the weighted sum of a flight's measures; None if one has no value. A time that never came counts
+    *   as the duration, as in [[ScenarioTerm.value]].
+    */
+  def sum(terms: Vector[(Double, Measure)], flown: Tracks, durationS: Double): Option[Double] =
+    val values = terms.flatMap: (weight, measure) =>
+      val never = Option.when(measure.reduced.exists(_.reduction.mayBeNever))(durationS)
+      measure.of(flown).orElse(never).map(weight * _)
     Option.when(values.size == terms.size)(values.sum)
 
   /** Maximum number of flights in virtual time in one search: a day of them, at one a second. */
@@ -135,6 +140,7 @@ object WholeFlights:
       Engine.scalar(why),
       Effort.OfScalarFlights,
       blockEpisodes = 64,
+      flown.game.durationS,
       forward(flown.timing, link, flown.vehicle.response, flown.game.durationS, seed)
     )
 
@@ -190,6 +196,7 @@ object WholeFlights:
     inVirtualTime(reason),
     Effort.OfFlights,
     blockEpisodes = 4,
+    conditions.durationS,
     virtual(conditions, loop, link, seed)
   )
 

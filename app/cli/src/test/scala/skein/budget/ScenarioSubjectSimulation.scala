@@ -108,7 +108,7 @@ final case class Drift(toM: Double = 12) extends Scenario:
   private val north = Series("north", "m")(tracks => instant => tracks.northM(0)(instant))
 
   override def measures: Vector[Measure] =
-    Vector(north.most("furthest"), north.firstWhere("arrives")(_ > toM))
+    Vector(north.most("furthest"), north.firstAbove("arrives", toM))
 
 final case class Northward(toM: Double) extends skein.policy.Policy:
   import skein.policy.*

@@ -65,7 +65,7 @@ final case class Convoy(
       offPlaces.rms("off places", settled),
       apart.mean("between cars", settled),
       apart.sd("its sd", settled),
-      unseen.timeWhere("out of view")(_ > sightM)
+      unseen.timeAbove("out of view", sightM)
     )
 
   override def note: String =

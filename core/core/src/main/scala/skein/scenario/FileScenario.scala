@@ -70,8 +70,9 @@ private[skein] sealed class FileScenario(val file: ScenarioFile, val values: Arr
       case "most"          => of.most(by.name, over)
       case "least-at"      => of.leastAt(by.name, over)
       case "most-at"       => of.mostAt(by.name, over)
-      case "time-positive" => of.timeWhere(by.name, over)(_ > 0)
-      case _               => of.firstWhere(by.name)(_ > 0)
+      case "time-positive" => of.timeAbove(by.name, 0, over)
+      case "stays-positive" => of.staysAbove(by.name, 0)
+      case _               => of.firstAbove(by.name, 0)
 
   override def series: Vector[Series]    = drawn.map(_._1)
   override def measures: Vector[Measure] = drawn.flatMap(_._2)

@@ -82,25 +82,49 @@ final class Series private (
   def most(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Most)
 
   /** First time at which the quantity has its minimum, s. */
-  def leastAt(name: String, over: Window = Window.Whole): Measure =
-    Measure.over(name, "s", over)((tracks, instants) => tracks.timeS(instants.minBy(at(tracks))))
+  def leastAt(name: String, over: Window = Window.Whole): Measure = timed(name, over, Reduction.LeastAt)
 
   /** First time at which the quantity has its maximum, s. */
-  def mostAt(name: String, over: Window = Window.Whole): Measure =
-    Measure.over(name, "s", over)((tracks, instants) => tracks.timeS(instants.maxBy(at(tracks))))
+  def mostAt(name: String, over: Window = Window.Whole): Measure = timed(name, over, Reduction.MostAt)
 
-  def timeWhere(name: String, over: Window = Window.Whole)(holds: Double => Boolean): Measure =
-    Measure.over(name, "s", over): (tracks, instants) =>
-      val value = at(tracks)
-      instants.count(instant => holds(value(instant))) * tracks.stepS
+  /** Total time in which the quantity is above a bound, s. */
+  def timeAbove(name: String, bound: Double, over: Window = Window.Whole): Measure =
+    above(bound).timed(name, over, Reduction.TimePositive)
 
-  /** First time at which a condition holds, s; no value if it never does. */
-  def firstWhere(name: String)(holds: Double => Boolean): Measure = Measure(name, "s"): tracks =>
-    val value = at(tracks)
-    tracks.instants.find(instant => holds(value(instant))).map(tracks.timeS)
+  /** Total time in which the quantity is below a bound, s. */
+  def timeBelow(name: String, bound: Double, over: Window = Window.Whole): Measure =
+    below(bound).timed(name, over, Reduction.TimePositive)
 
-  private def reduced(name: String, over: Window, reduction: Reduction): Measure =
-    def of(tracks: Tracks, instants: Range) = reduction.of(instants.map(at(tracks)))
+  /** First time at which the quantity is above a bound, s; no value if it never is. */
+  def firstAbove(name: String, bound: Double): Measure =
+    above(bound).timed(name, Window.Whole, Reduction.FirstPositive)
+
+  /** First time at which the quantity is below a bound, s; no value if it never is. */
+  def firstBelow(name: String, bound: Double): Measure =
+    below(bound).timed(name, Window.Whole, Reduction.FirstPositive)
+
+  /** Time from which the quantity stays above a bound until the end, s; no value if it ends otherwise. */
+  def staysAbove(name: String, bound: Double): Measure =
+    above(bound).timed(name, Window.Whole, Reduction.StaysPositive)
+
+  /** Time from which the quantity stays below a bound until the end, s; no value if it ends otherwise. */
+  def staysBelow(name: String, bound: Double): Measure =
+    below(bound).timed(name, Window.Whole, Reduction.StaysPositive)
+
+  private def above(bound: Double): Series =
+    if bound == 0 then this
+    else new Series(name, unit, None, quantity.map(Excess(_, bound)))(tracks => at(tracks).andThen(_ - bound))
+
+  private def below(bound: Double): Series =
+    new Series(name, unit, None, quantity.map(Shortfall(_, bound)))(tracks => at(tracks).andThen(bound - _))
+
+  private def timed(name: String, over: Window, reduction: Reduction) = measure(name, "s", over, reduction)
+
+  private def reduced(name: String, over: Window, reduction: Reduction) = measure(name, unit, over, reduction)
+
+  private def measure(name: String, unit: String, over: Window, reduction: Reduction): Measure =
+    def of(tracks: Tracks, instants: Range) =
+      reduction.of(instants.map(at(tracks)), index => tracks.timeS(instants(index)), tracks.stepS)
     quantity.fold(Measure.over(name, unit, over)(of))(each =>
       Measure.of(name, unit, OverFlight(each, reduction, over))(of)
     )

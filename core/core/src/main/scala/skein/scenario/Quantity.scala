@@ -41,20 +41,49 @@ object Quantity:
 
   private[skein] def whose(quantity: Quantity): String = OwnFailure.named("quantity", quantity)
 
+/** A quantity minus a bound. */
+private[scenario] final case class Excess(quantity: Quantity, bound: Double) extends Quantity:
+  def of(positions: Positions): Double = quantity.of(positions) - bound
+
+/** A bound minus a quantity. */
+private[scenario] final case class Shortfall(quantity: Quantity, bound: Double) extends Quantity:
+  def of(positions: Positions): Double = bound - quantity.of(positions)
+
 /** Reduces a quantity's values over time to one value. */
 enum Reduction:
-  case Mean
+  case Mean, Rms, Sd, Least, Most
 
-  case Rms
+  /** First time of the least or the greatest value, s. */
+  case LeastAt, MostAt
 
-  case Sd
-  case Least, Most
+  /** Total time in which the value was above 0, s. */
+  case TimePositive
 
-  def of(values: IndexedSeq[Double]): Double = this match
-    case Mean  => values.sum / values.size
-    case Rms   => math.sqrt(values.map(value => value * value).sum / values.size)
-    case Least => values.min
-    case Most  => values.max
-    case Sd    =>
-      val mean = values.sum / values.size
-      math.sqrt(values.map(value => (value - mean) * (value - mean)).sum / values.size)
+  /** First time at which the value was above 0, s; infinite if it never was. */
+  case FirstPositive
+
+  /** Time from which the value was above 0 until the end, s; infinite if the last value was not. */
+  case StaysPositive
+
+  /** Whether it is a time that may never come. */
+  private[skein] def mayBeNever: Boolean = this == FirstPositive || this == StaysPositive
+
+  /** @param timesS the times of the values, ascending
+    * @param stepS time between two values
+    */
+  def of(values: IndexedSeq[Double], timesS: Int => Double, stepS: Double): Double =
+    def timeOf(index: Int) =
+      if values.indices.contains(index) then timesS(index) else Double.PositiveInfinity
+    this match
+      case Mean          => values.sum / values.size
+      case Rms           => math.sqrt(values.map(value => value * value).sum / values.size)
+      case Least         => values.min
+      case Most          => values.max
+      case LeastAt       => timesS(values.indices.minBy(values))
+      case MostAt        => timesS(values.indices.maxBy(values))
+      case TimePositive  => values.count(_ > 0) * stepS
+      case FirstPositive => timeOf(values.indexWhere(_ > 0))
+      case StaysPositive => timeOf(values.lastIndexWhere(value => !(value > 0)) + 1)
+      case Sd            =>
+        val mean = values.sum / values.size
+        math.sqrt(values.map(value => (value - mean) * (value - mean)).sum / values.size)

@@ -149,7 +149,7 @@ private[scenario] final class ScenarioReader private (text: String):
       wrong(s"expected a measure's own name, got '${shown(name)}' twice")
     val reduction = words.oneOf("a reduction", Reductions)(identity)
     val window    =
-      if reduction == "first-positive" then None
+      if Unwindowed.contains(reduction) then None
       else Seq("last", "after").find(words.isNext).map(word => word -> words.fixed())
     of.measures += Reduced(name, reduction, window)
 
@@ -264,8 +264,9 @@ private[scenario] object ScenarioReader:
     "polygon"               -> 0
   )
 
+  private val Unwindowed = Vector("first-positive", "stays-positive")
   private val Reductions =
-    Vector("mean", "rms", "sd", "least", "most", "least-at", "most-at", "time-positive", "first-positive")
+    Vector("mean", "rms", "sd", "least", "most", "least-at", "most-at", "time-positive") ++ Unwindowed
 
   private val Words = Vector(
     "name",

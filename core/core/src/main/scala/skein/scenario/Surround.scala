@@ -42,10 +42,10 @@ final case class Surround(
     val last = Window.Last(10)
     Vector(
       offRing.rms("off ring", last),
-      Series("ring", "m")(tracks => instant => mean(distancesM(tracks, instant))).mean("ring", last),
-      Series("nearest", "m")(tracks => instant => distancesM(tracks, instant).min).least("nearest", last),
+      Series.of("ring", "m", MeanDistance).mean("ring", last),
+      Series.of("nearest", "m", LeastDistance).least("nearest", last),
       gap.mean("gap", last),
-      Measure("surrounded after", "s")(surroundedFromS)
+      gap.staysBelow("surrounded after", 180)
     )
 
   override def note: String =
@@ -57,16 +57,22 @@ final case class Surround(
 object Surround:
   private val gap = Series.of("gap", "°", WidestGap)
 
-  /** Distances of the pursuers from the evader, the first vehicle, m. */
-  private def distancesM(tracks: Tracks, instant: Int) =
-    tracks.vehicles.tail.map(tracks.distanceM(0, _, instant))
+  /** Mean horizontal distance of the pursuers from the evader, the first vehicle, m. */
+  private case object MeanDistance extends Quantity:
+    def of(positions: Positions): Double =
+      var sum     = 0.0
+      var pursuer = 1
+      while pursuer < positions.count do
+        sum += positions.distanceM(0, pursuer)
+        pursuer += 1
+      sum / (positions.count - 1)
 
-  /** Time from which the evader stays between its pursuers, with no gap of 180° or more, s; None if it never
-    * does.
-    */
-  private def surroundedFromS(tracks: Tracks): Option[Double] =
-    val gaps    = gap.curve(tracks).points
-    val outside = gaps.lastIndexWhere(_._2 >= 180)
-    Option.when(outside < gaps.size - 1)(gaps(outside + 1)._1)
-
-  private def mean(values: Seq[Double]): Double = values.sum / values.size
+  /** Horizontal distance of the nearest pursuer from the evader, m. */
+  private case object LeastDistance extends Quantity:
+    def of(positions: Positions): Double =
+      var least   = Double.PositiveInfinity
+      var pursuer = 1
+      while pursuer < positions.count do
+        least = least.min(positions.distanceM(0, pursuer))
+        pursuer += 1
+      least

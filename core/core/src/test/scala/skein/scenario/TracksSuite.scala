@@ -88,10 +88,11 @@ class TracksSuite extends munit.FunSuite:
 
   test("reductions of the values 3, 4 and 8"):
     val values = Vector(3.0, 4.0, 8.0)
-    assertEquals(Reduction.Mean.of(values), 5.0)
-    assertEqualsDouble(Reduction.Rms.of(values), math.sqrt(89 / 3.0), 1e-12)
-    assertEqualsDouble(Reduction.Sd.of(values), math.sqrt(14 / 3.0), 1e-12)
-    assertEquals((Reduction.Least.of(values), Reduction.Most.of(values)), (3.0, 8.0))
+    def of(reduction: Reduction) = reduction.of(values, 10.0 + _, 1)
+    assertEquals(of(Reduction.Mean), 5.0)
+    assertEqualsDouble(of(Reduction.Rms), math.sqrt(89 / 3.0), 1e-12)
+    assertEqualsDouble(of(Reduction.Sd), math.sqrt(14 / 3.0), 1e-12)
+    assertEquals((of(Reduction.Least), of(Reduction.Most)), (3.0, 8.0))
 
   private def positions(northEastM: (Double, Double)*) = Positions(
     IArray.from(northEastM.map(_._1)),
@@ -125,7 +126,11 @@ class TracksSuite extends munit.FunSuite:
     // Of a line from 0 to 20: 20 / √3, and 20 / √12 about its middle.
     assertEqualsDouble(apart.rms("rms").of(flight).get, 20 / math.sqrt(3), 0.02)
     assertEqualsDouble(apart.sd("sd").of(flight).get, 20 / math.sqrt(12), 0.02)
-    assertEqualsDouble(apart.timeWhere("low", Window.After(2))(_ <= 8).of(flight).get, 2.02, 1e-9)
+    assertEqualsDouble(apart.timeBelow("low", 8.001, Window.After(2)).of(flight).get, 2.02, 1e-9)
+    assertEqualsDouble(apart.firstAbove("from 12", 12.01).of(flight).get, 6.02, 1e-9)
+    assertEqualsDouble(apart.staysAbove("from 12", 12.01).of(flight).get, 6.02, 1e-9)
+    assertEquals(apart.staysBelow("below 12", 12).of(flight), None)
+    assertEquals(apart.staysBelow("below 30", 30).of(flight), Some(0.0))
     assertEquals(apart.curve(flight).points.last, (10.0, 20.0))
     assertEquals((apart.title, Series("ratio", "")(_ => _ => 1).title), ("apart, m", "ratio"))
     val arrived = Measure.count("arrived")(_.vehicles.size)

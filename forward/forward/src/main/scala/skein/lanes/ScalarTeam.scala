@@ -56,6 +56,7 @@ private[skein] object ScalarTeam:
 /** Computes a score of one episode from its values. Mutable. */
 private final class Tally(val judged: Judged):
   private val values = ArrayBuilder.ofDouble()
+  private val timesS = ArrayBuilder.ofDouble()
   private var firstS = Double.PositiveInfinity
   private var begun  = false
 
@@ -64,11 +65,12 @@ private final class Tally(val judged: Judged):
     if !begun then
       begun = true
       values.clear()
+      timesS.clear()
       firstS = Double.PositiveInfinity
 
   def add(timeS: Double, value: Double): Unit = judged.reduction match
     case OfMoment.FirstWithin(limit) => if value <= limit then firstS = firstS.min(timeS)
-    case _                           => values += value
+    case _                           => values += value; timesS += timeS
 
   /** The score of the values so far; NaN if there were none. */
   def value: Double =
@@ -77,7 +79,7 @@ private final class Tally(val judged: Judged):
       case OfMoment.FirstWithin(_) => firstS
       case _ if values.length == 0 => Double.NaN
       case OfMoment.Newest         => all.last
-      case reduction: Reduction    => reduction.of(all)
+      case reduction: Reduction    => reduction.of(all, timesS.result(), judged.everyS)
 
 /** Steps the vehicles of many teams together, with the loops of the scalar reference. Mutable. */
 private final class SteppedTeams(timing: LoopTiming, stepped: SteppedRollouts):

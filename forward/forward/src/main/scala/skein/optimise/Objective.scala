@@ -121,7 +121,7 @@ object Objective:
     val known  = measures(scenario)
     val others = scenario.measures.filter(_.reduced.isEmpty).map(ScenarioTerm.keyOf)
     read(text, known, otherwise): name =>
-      val note = if others.contains(name) then s": $name is told of recorded flights alone" else ""
+      val note = if others.contains(name) then s": $name is a measure of whole flights" else ""
       if known.isEmpty then (s"another scenario, since ${scenario.name} has no measure of a quantity", note)
       else (s"one of ${known.keys.mkString(", ")}", note)
 

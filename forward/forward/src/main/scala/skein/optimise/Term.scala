@@ -30,9 +30,11 @@ final case class ScenarioTerm(measure: Measure) extends Term:
       case Window.Whole          => 0
       case Window.After(seconds) => seconds
       case Window.Last(seconds)  => durationS - math.floor(seconds / periodS + 1e-9) * periodS
-    Judged(by.quantity, by.reduction, fromS)
+    Judged(by.quantity, by.reduction, fromS, periodS)
 
-  def value(computed: Float, durationS: Double): Double = computed
+  /** A time that never came counts as the episode's duration. */
+  def value(computed: Float, durationS: Double): Double =
+    if measure.reduced.exists(_.reduction.mayBeNever) then computed.toDouble.min(durationS) else computed
 
 object ScenarioTerm:
   def keyOf(measure: Measure): String = measure.name.replace(' ', '-')

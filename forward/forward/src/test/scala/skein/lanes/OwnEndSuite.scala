@@ -2,6 +2,7 @@ package skein.lanes
 
 import skein.forward.*
 import skein.lanes.score.{Judged, OfMoment}
+import skein.optimise.ScenarioTerm
 import skein.policy.*
 import skein.scenario.*
 import skein.signal.{LatencyDistribution, SplitMix64}
@@ -28,7 +29,18 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
     Judged(Apart, Reduction.Least, 9),
     Judged(Ahead, Reduction.Sd, 9),
     Judged(Ahead, Reduction.Most, 6)
-  )
+  ) ++ Vector(
+    Series.of("ahead", "m", Ahead).leastAt("at"),
+    Series.of("height", "m", Height).mostAt("at", Window.After(9)),
+    apart.timeAbove("far", 8.1),
+    apart.timeBelow("near", 9.7, Window.After(2)),
+    apart.firstAbove("from", 9.3),
+    apart.firstBelow("from", 7.9),
+    apart.staysAbove("since", 8.3),
+    apart.staysBelow("since", 20.1)
+  ).map(ScenarioTerm(_).judged(durationS, 0.1).get)
+
+  private def apart = Series.of("apart", "m", Apart)
 
   private def candidates(scenarios: SplitMix64 => Scenario): Vector[TeamCandidate] =
     val random = SplitMix64(11)

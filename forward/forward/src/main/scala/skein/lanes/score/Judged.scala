@@ -6,8 +6,14 @@ import skein.scenario.{Quantity, Reduction}
   *
   * @param reduction how the quantity's values, one per period, become one value
   * @param fromS time of the first value that is used
+  * @param everyS time between two values, s; only [[Reduction.TimePositive]] needs it
   */
-final case class Judged(quantity: Quantity, reduction: Reduction | OfMoment, fromS: Double):
+final case class Judged(
+    quantity: Quantity,
+    reduction: Reduction | OfMoment,
+    fromS: Double,
+    everyS: Double = 0
+):
   private[lanes] def counts(timeS: Double): Boolean = Judged.counts(timeS, fromS)
 
 object Judged:

@@ -117,7 +117,10 @@ private[lanes] final class ScoreLanes private (
     * @param value the quantity's present value
     */
   private def successorsOf(number: Int, value: Node, kept: Int => Node): Vector[Node] =
-    val own = trace.param(ownParameter(number))
+    val own                 = trace.param(ownParameter(number))
+    val time                = trace.param(Time)
+    def isPositive          = trace.lt(trace.const(0), value)
+    def never               = trace.const(Double.PositiveInfinity)
     judged(number).reduction match
       case Reduction.Least => Vector(trace.binary(Op.Min, kept(0), value))
       case Reduction.Most  => Vector(trace.binary(Op.Max, kept(0), value))
@@ -127,9 +130,18 @@ private[lanes] final class ScoreLanes private (
         val off  = trace.sub(value, kept(0))
         val mean = trace.add(kept(0), trace.mul(off, own))
         Vector(mean, trace.add(kept(1), trace.mul(off, trace.sub(value, mean))))
+      case Reduction.LeastAt =>
+        Vector(trace.binary(Op.Min, kept(0), value), trace.where(trace.lt(value, kept(0)), time, kept(1)))
+      case Reduction.MostAt =>
+        Vector(trace.binary(Op.Max, kept(0), value), trace.where(trace.lt(kept(0), value), time, kept(1)))
+      case Reduction.TimePositive =>
+        Vector(trace.add(kept(0), trace.where(isPositive, trace.const(1), trace.const(0))))
+      case Reduction.FirstPositive =>
+        Vector(trace.binary(Op.Min, kept(0), trace.where(isPositive, time, never)))
+      case Reduction.StaysPositive =>
+        Vector(trace.where(isPositive, trace.binary(Op.Min, kept(0), time), never))
       case OfMoment.FirstWithin(_) =>
-        val now = trace.where(trace.le(value, own), trace.param(Time), trace.const(Double.PositiveInfinity))
-        Vector(trace.binary(Op.Min, now, kept(0)))
+        Vector(trace.binary(Op.Min, kept(0), trace.where(trace.le(value, own), time, never)))
       case OfMoment.Newest => Vector(value)
 
   private val derived = angles.map(_.derived)
@@ -183,7 +195,7 @@ private[lanes] final class ScoreLanes private (
   def fits(by: Vector[Judged], vehicles: Int, ends: Option[OwnEnd]): Boolean =
     vehicles == count && by.size == judged.size && ends.isDefined == hasEnd && by.indices.forall { number =>
       val (own, other) = (judged(number), by(number))
-      own.reduction == other.reduction && own.fromS == other.fromS && all(number).fits(other.quantity)
+      own.copy(quantity = other.quantity) == other && all(number).fits(other.quantity)
     } && ends.forall(each => all.last.fits(each.scenario))
 
 private[lanes] object ScoreLanes:
@@ -236,11 +248,14 @@ private[lanes] object ScoreLanes:
   final case class Ending(place: Int, function: BoundFunction)
 
   private def initially(judged: Judged): Vector[Float] = judged.reduction match
-    case Reduction.Least | OfMoment.FirstWithin(_) => Vector(Float.PositiveInfinity)
-    case Reduction.Most                            => Vector(Float.NegativeInfinity)
-    case OfMoment.Newest                           => Vector(Float.NaN)
-    case Reduction.Sd                              => Vector(0, 0)
-    case Reduction.Mean | Reduction.Rms            => Vector(0)
+    case Reduction.Least | OfMoment.FirstWithin(_)            => Vector(Float.PositiveInfinity)
+    case Reduction.FirstPositive | Reduction.StaysPositive    => Vector(Float.PositiveInfinity)
+    case Reduction.Most                                       => Vector(Float.NegativeInfinity)
+    case Reduction.LeastAt                                    => Vector(Float.PositiveInfinity, Float.NaN)
+    case Reduction.MostAt                                     => Vector(Float.NegativeInfinity, Float.NaN)
+    case OfMoment.Newest                                      => Vector(Float.NaN)
+    case Reduction.Sd                                         => Vector(0, 0)
+    case Reduction.Mean | Reduction.Rms | Reduction.TimePositive => Vector(0)
 
   private type Scored = (Vector[Judged], Int, Option[OwnEnd])
 
@@ -270,11 +285,12 @@ private[lanes] object ScoreLanes:
     * @param kept its last accumulator
     * @param count number of values
     */
-  def value(reduction: Reduction | OfMoment, kept: Float, count: Int): Float = reduction match
-    case Reduction.Rms | Reduction.Sd                   => math.sqrt(kept / count).toFloat
-    case Reduction.Mean                                 => kept / count
-    case Reduction.Least | Reduction.Most if count == 0 => Float.NaN
-    case _                                              => kept
+  def value(of: Judged, kept: Float, count: Int): Float = of.reduction match
+    case Reduction.Rms | Reduction.Sd => math.sqrt(kept / count).toFloat
+    case Reduction.Mean               => kept / count
+    case _: Reduction if count == 0   => Float.NaN
+    case Reduction.TimePositive       => (kept * of.everyS).toFloat
+    case _                            => kept
 
   /** Scores the distance between two vehicles.
     *

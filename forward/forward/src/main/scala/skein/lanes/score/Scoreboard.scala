@@ -33,7 +33,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   /** How many of [[renewed]] have restarted. */
   private var begun = 0
 
-  for case (Judged(_, OfMoment.FirstWithin(limit), _), number) <- judged.zipWithIndex do
+  for case (OfMoment.FirstWithin(limit), number) <- judged.map(_.reduction).zipWithIndex do
     this.limit(number, limit.toFloat)
 
   private final class Stage(of: ScoreLanes.Stage):
@@ -226,7 +226,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   /** The final value of a score in one world; NaN without values. */
   def value(number: Int, world: Int): Float =
     val count = lanes.counted(number).fold(counts(number))(place => kept(place * worlds + world).toInt)
-    ScoreLanes.value(judged(number).reduction, soFar(number, world), count)
+    ScoreLanes.value(judged(number), soFar(number, world), count)
 
 private[lanes] object Scoreboard:
   /** Scores the distance between two vehicles.

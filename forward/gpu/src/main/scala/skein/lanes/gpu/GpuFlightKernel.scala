@@ -284,4 +284,4 @@ private[lanes] object GpuFlightKernel:
     private val count = scoredAtS.count(of.counts(_))
 
     val place: Int                = scores.places(number + 1) - 1
-    def apply(kept: Float): Float = ScoreLanes.value(of.reduction, kept, count)
+    def apply(kept: Float): Float = ScoreLanes.value(of, kept, count)

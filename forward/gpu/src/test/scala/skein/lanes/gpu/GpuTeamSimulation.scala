@@ -46,7 +46,7 @@ class GpuTeamSimulation extends munit.FunSuite, TestGpus:
       val scenario = of(i)
       val judged   =
         for reduction <- reductions
-        yield Judged(OffRing(4 + i), reduction, fromS = if reduction == Reduction.Mean then 2 else 0)
+        yield Judged(OffRing(4 + i), reduction, if reduction == Reduction.Mean then 2 else 0, everyS = 0.1)
       val plain = Engagement.of(scenario.fleet, durationS)
       val team  =
         plain.copy(agents = plain.agents.map(each => each.copy(policy = own(i).getOrElse(each.policy))))
