@@ -73,7 +73,7 @@ def drawn(random_, count):
 
 def inputs_of(seen, scenario_, memory=()):
     named = {"elapsed": seen.elapsed_s, "cruise": seen.cruise_mps, "start-down": seen.start_down_m}
-    named["acts-in"], named["ahead"] = seen.acts_in_s, 0.5
+    named["acts-in"], named["ahead"], named["time"] = seen.acts_in_s, 0.5, seen.time_s
     words = ("north", "east", "down", "north-mps", "east-mps", "down-mps", "heading", "age")
     for place, one in enumerate(seen.vehicles):
         fields = (one.north_m, one.east_m, one.down_m, one.north_mps, one.east_mps, one.down_mps)

@@ -134,6 +134,9 @@ class Observation:
         Down coordinate of its start.
     rivals : sequence of int
         Indices of the vehicles of another role, or of all others if there are none.
+    time_s : float
+        Time of the flight at which the command acts, as far as the loop knows: the present plus `acts_in_s`, since
+        this vehicle was first read.
     """
 
     place: int
@@ -143,6 +146,7 @@ class Observation:
     cruise_mps: Any = 5.0
     start_down_m: Any = -5.0
     rivals: Sequence[int] | None = None
+    time_s: Any = 0.0
 
     def __getattr__(self, name: str) -> Any:
         if name in _FUNCTIONS:

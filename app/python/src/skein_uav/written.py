@@ -124,7 +124,7 @@ class Writer:
         rivals = [one for one in others if _role(vehicles[one].role) != _role(vehicles[place].role)]
         leaves = (self.graph.leaf(word, "", of) for word in ("elapsed", "acts-in", "cruise", "start-down"))
         known = _Team(self.known(one, of) for one in range(len(vehicles)))
-        return Observation(place, known, *leaves, rivals=rivals or others)
+        return Observation(place, known, *leaves, rivals=rivals or others, time_s=self.graph.leaf("time", "", of))
 
     def vehicle(self, place: int, vehicle: Vehicle, all_: Sequence[Vehicle]) -> None:
         what = f"the policy of {vehicle.name}"

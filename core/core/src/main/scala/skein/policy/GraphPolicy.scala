@@ -77,6 +77,7 @@ private[skein] sealed class GraphPolicy(val graph: PolicyGraph, val values: Arra
         case PolicyInput.Age(vehicle)     => seen.vehicles(vehicle).age.toSeconds
         case PolicyInput.Elapsed          => seen.elapsed.toSeconds
         case PolicyInput.ActsIn           => seen.actsIn.toSeconds
+        case PolicyInput.Time             => seen.time.toSeconds
         case PolicyInput.Cruise           => seen.cruise.value
         case PolicyInput.StartDown        => seen.startDown.value
         case PolicyInput.Memory(number)   => memory(number)

@@ -17,6 +17,8 @@ import skein.units.*
   * @param sensed last readings of this vehicle's sensors, keyed by name: those that the policy requests
   *   ([[Policy.sensors]]) and that have arrived
   * @param actsIn predicted time until the command takes effect; zero in loops without predictions
+  * @param time time of the flight at which the command takes effect, as far as the loop knows: the present
+  *   plus `actsIn`, since this vehicle was first read
   */
 final case class Observation(
     self: Int,
@@ -28,7 +30,8 @@ final case class Observation(
     cruise: MetresPerSecond,
     startDown: Metres,
     sensed: Map[String, Sensed] = Map.empty,
-    actsIn: Span = Span.Zero
+    actsIn: Span = Span.Zero,
+    time: Span = Span.Zero
 ):
   def own: Seen = vehicles(self)
 

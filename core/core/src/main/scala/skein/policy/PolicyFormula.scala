@@ -257,7 +257,8 @@ private final class Tagged(val self: Int, count: Int, rivals: Vector[Int], isPre
       MetresPerSecond(tags.tag(PolicyInput.Cruise)),
       Metres(tags.tag(PolicyInput.StartDown)),
       Map.empty,
-      tags.span(PolicyInput.ActsIn)
+      tags.span(PolicyInput.ActsIn),
+      tags.span(PolicyInput.Time)
     ),
     refused = Tagged.Refused
   )

@@ -19,6 +19,8 @@ enum PolicyInput:
 
   case ActsIn
 
+  case Time
+
   case Cruise
 
   case StartDown

@@ -128,6 +128,7 @@ private[scenario] object ScenarioNodes:
   private val Alone: Map[String, PolicyInput] = Map(
     "elapsed"    -> PolicyInput.Elapsed,
     "acts-in"    -> PolicyInput.ActsIn,
+    "time"       -> PolicyInput.Time,
     "cruise"     -> PolicyInput.Cruise,
     "start-down" -> PolicyInput.StartDown
   )

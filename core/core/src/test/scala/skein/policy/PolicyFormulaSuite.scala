@@ -59,6 +59,7 @@ class PolicyFormulaSuite extends munit.FunSuite:
       case PolicyInput.Age(vehicle)     => seen.vehicles(vehicle).age.toSeconds
       case PolicyInput.Elapsed          => seen.elapsed.toSeconds
       case PolicyInput.ActsIn           => seen.actsIn.toSeconds
+      case PolicyInput.Time             => seen.time.toSeconds
       case PolicyInput.Cruise           => seen.cruise.value
       case PolicyInput.StartDown        => seen.startDown.value
       case PolicyInput.Memory(number)   => memory(number)

@@ -5,9 +5,16 @@ import skein.units.*
 
 /** State of one vehicle's decisions, in addition to the view.
   *
+  * @param firstReadAt when the vehicle's reading of the first decision was sampled, on the simulator's clock
   * @param held the policy's memory, of a type of its own
   */
-final case class Memory(headingRad: Double, decidedAt: Option[Instant], decisions: Long, held: Any = ())
+final case class Memory(
+    headingRad: Double,
+    decidedAt: Option[Instant],
+    decisions: Long,
+    firstReadAt: Option[Instant] = None,
+    held: Any = ()
+)
 
 /** Decisions for one vehicle of a scenario: the pure core of every loop.
   *
@@ -18,7 +25,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
 
   def this(fleet: Fleet, self: Int) = this(fleet, self, fleet.agents(self).policy)
 
-  val start: Memory = Memory(agent.startHeading.value, None, 0, PolicyAnswer.first(agent)(policy.start))
+  val start: Memory = Memory(agent.startHeading.value, None, 0, None, PolicyAnswer.first(agent)(policy.start))
 
   /** Decides from a complete view.
     *
@@ -55,6 +62,8 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
   /** The observation for the vehicle's policy. */
   def observation(memory: Memory, view: TeamView, now: Instant): Observation =
     val places = fleet.agents.indices.toVector
+    val own    = view.readings(self).get.state
+    val ahead  = actsIn(view, now)
     Observation(
       self,
       places.map(seen(view, now, _)),
@@ -68,7 +77,8 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
       Metres(agent.startPositionNed.z),
       view.sensed(self).map: (sensor, reading) =>
         sensor -> Sensed(reading.columns, reading.values.value, view.ageOf(reading.values, now)),
-      actsIn(view, now)
+      ahead,
+      own.validAt.since(memory.firstReadAt.getOrElse(own.validAt)) + view.ageOf(own, now) + ahead
     )
 
   private def actsIn(view: TeamView, now: Instant): Span =
@@ -113,6 +123,10 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
       elapsed = elapsed(memory, now),
       action = action
     )
-    val next = memory
-      .copy(headingRad = decision.heading.value, decidedAt = Some(now), decisions = memory.decisions + 1)
+    val next = memory.copy(
+      headingRad = decision.heading.value,
+      decidedAt = Some(now),
+      decisions = memory.decisions + 1,
+      firstReadAt = memory.firstReadAt.orElse(view.readings(self).map(_.state.validAt))
+    )
     (next, decision)

@@ -12,7 +12,7 @@ import skein.units.*
 /** Messages as bytes: one byte for the version, then the message as [[Codec]] writes it. */
 object SolverMessageCodec:
   /** Version of the encoding; other versions are refused. */
-  val Version = 8
+  val Version = 9
 
   /** Maximum size of a message, bytes: a Kafka broker's default limit, less its own overhead. */
   val MostBytes = 900_000
@@ -52,8 +52,9 @@ object SolverMessageCodec:
 
   // The policy's own memory stays at the solver.
   private given Codec[Memory] = Codec
-    .derived[(Double, Option[Instant], Long)]
-    .imap(Memory(_, _, _))(memory => (memory.headingRad, memory.decidedAt, memory.decisions))
+    .derived[(Double, Option[Instant], Long, Option[Instant])]
+    .imap(Memory(_, _, _, _)): memory =>
+      (memory.headingRad, memory.decidedAt, memory.decisions, memory.firstReadAt)
 
   private given Codec[Question] = Codec
     .derived[Question]

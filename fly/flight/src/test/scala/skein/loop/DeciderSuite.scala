@@ -176,6 +176,13 @@ class DeciderSuite extends munit.FunSuite:
     // The simulator's clock is 900 ms ahead, to within the drift.
     assertEqualsDouble(foreseen(1150).actsIn.toMillis, 50, 0.01)
     assertEquals(foreseen(1050).actsIn, Span.Zero, "what was to act already acts now")
+    // The own reading was sampled 60 ms before, at 1040 ms, and the first one 640 ms before that.
+    val later = memory.copy(firstReadAt = Some(millis(400)))
+    def timeAt(view: TeamView) = pursuer.observation(later, view, millis(200)).time.toMillis
+    assertEqualsDouble(timeAt(moved), 700, 0.01)
+    assertEqualsDouble(heard.time.toMillis, 60, 0.01)
+    val estimate = skein.forecast.Estimate(ahead, millis(1150), millis(1040))
+    assertEqualsDouble(timeAt(moved.copy(estimates = Some(Vector(estimate, estimate)))), 750, 0.01)
 
   test("no decision is made before every vehicle was read"):
     assert(!TeamView.empty(2).withReading(reading(0, 0, 0, 0, 0, 0)).isComplete)

@@ -189,8 +189,8 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
   test("an error message states what was expected and what was received"):
     val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2))
     assertEquals(
-      SolverMessageCodec.message(welcome.updated(0, 9.toByte)),
-      Left("expected messages of version 8 of the solver's protocol, got version 9")
+      SolverMessageCodec.message(welcome.updated(0, 10.toByte)),
+      Left("expected messages of version 9 of the solver's protocol, got version 10")
     )
     assertEquals(
       SolverMessageCodec.message(welcome.updated(1, 42.toByte)),

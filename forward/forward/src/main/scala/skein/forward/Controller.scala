@@ -84,6 +84,9 @@ private[skein] final class Controller(
   private var turnAt        = 0L
   private var holds         = false
   private var lastDecidedAt = Controller.Never
+
+  /** When this vehicle's reading of the first decision was sampled. */
+  private var firstReadAt = Controller.Never
   private var decided       = 0.0
   private var sent          = 0.0
   private var sentNumber    = 0
@@ -118,6 +121,7 @@ private[skein] final class Controller(
   def start(): Unit =
     outstanding = 0; mayCommandAt = 0; mayCommand = false; turnAt = 0; holds = false
     lastDecidedAt = Controller.Never
+    firstReadAt = Controller.Never
     decided = own.startHeadingRad
     if world.asksPolicies then choosing.start() else action = straight
     sent = decided; sentNumber = 0
@@ -159,6 +163,7 @@ private[skein] final class Controller(
     val before    = decided
     for forecast <- observation.forecast do ahead(observation, forecast)
     upon = observation
+    if firstReadAt == Controller.Never then firstReadAt = observation.validAtNs(agent)
     val believed = world.views(agent).map: view =>
       val known = view.believed(observation.forecast.map(actsIn(_).toSeconds))
       view.turn(known.placeNed.x - observation.x(agent), known.placeNed.y - observation.y(agent))
@@ -183,6 +188,7 @@ private[skein] final class Controller(
     val now         = world.nowNs
     val opponent    = world.assignment.opponentOf(agent, distance)
     val isPredicted = observation.forecast.isDefined
+    val ahead       = observation.forecast.fold(Span.Zero)(actsIn)
     val seen        = Observation(
       agent,
       Vector.tabulate(world.count): vehicle =>
@@ -197,7 +203,8 @@ private[skein] final class Controller(
       made,
       MetresPerSecond(own.speed),
       startDown,
-      actsIn = observation.forecast.fold(Span.Zero)(actsIn)
+      actsIn = ahead,
+      time = Span.ofNanos(now - firstReadAt) + ahead
     )
     believed.fold(seen): known =>
       import known.velocityNed

@@ -186,7 +186,10 @@ object LearnerTeams:
 
     private def formOf(team: TeamCandidate) = forms
       .of(team)
-      .filterOrElse(!_.scores.asksTime, "a measure depends on the time, and each world restarts at its own")
+      .filterOrElse(
+        form => !form.scores.asksTime && !form.policies.asksTime,
+        "a measure or a policy depends on the time, and each world restarts at its own"
+      )
 
     private def timetableOf(form: TeamForm, draw: Long): Timetable =
       val key = keyOf(draw)

@@ -140,6 +140,7 @@ private[lanes] class TeamAgents(
         decisions.knows(vehicle, other.told, more.heading(decision, vehicle) * WORLDS)
       vehicle += 1
     if decisions.actsInS != null then Arrays.fill(decisions.actsInS, more.actsInS(decision))
+    if decisions.timeS != null then Arrays.fill(decisions.timeS, more.timeS(decision))
 
 private[lanes] object TeamAgents:
   def of(team: Vector[RolloutAgent], models: Vector[LaneDynamics], views: TeamViews): Array[TeamAgents] =
@@ -163,6 +164,7 @@ private[lanes] final class LoopTeamAgents private (
   private val decisions = TeamDecisions(self, team, altitudesDownM)
   private val asksMore  = team.lanes.asksMore(self)
   private val asksAges  = team.lanes.asksAges(self)
+  private val ownAgeS   = Array.ofDim[Float](TimetableAgents.WORLDS)
 
   /** The last and the previous commanded headings; null if they are not needed. */
   private var told, toldBefore: Directions = null
@@ -217,6 +219,9 @@ private[lanes] final class LoopTeamAgents private (
       vehicle += 1
     if decisions.actsInS != null && forecast != null then
       System.arraycopy(forecast.actsS, 0, decisions.actsInS, 0, decisions.actsInS.length)
+    if decisions.timeS != null then
+      age(self, readAt, ownAgeS)
+      timeAt(ownAgeS, decisions.timeS)
 
   override def remember(vectors: LaneVectors, endGrains: Int): Unit =
     decisions.commitBefore(decides, LaneOffers.NONE)

@@ -69,8 +69,8 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
   /** For each vehicle, its last known commanded heading, where it is needed. */
   val known: Array[Directions] = Array.ofDim(lanes.count)
 
-  /** Time until the command takes effect, s; null if it is not needed. */
-  var actsInS: Array[Float] = null
+  /** Time until the command takes effect, and the time at which it does, s; null if it is not needed. */
+  var actsInS, timeS: Array[Float] = null
 
   private val deciding  = Call(lanes.functions(self))
   private val observing = Call(lanes.sights(self))
@@ -101,6 +101,9 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
         case Source.ActsIn =>
           if actsInS == null then actsInS = Array.ofDim[Float](WORLDS)
           stands(actsInS)
+        case Source.Time =>
+          if timeS == null then timeS = Array.ofDim[Float](WORLDS)
+          stands(timeS)
         case Source.KnownCos(vehicle) => asksKnownCos(vehicle) = place
         case Source.KnownSin(vehicle) => asksKnownSin(vehicle) = place
         case Source.Parameter(number) => stands(parameters, number * WORLDS)

@@ -42,7 +42,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
       (fleet(_, Role.Evader -> (random => Weaving(random.nextDouble())), Role.Pursuer -> (_ => Ages))),
     "five of different kinds, who know what others are told" -> (fleet(
       _,
-      Role.Evader  -> (random => Weaving(random.nextDouble())),
+      Role.Evader  -> (random => Circling(random.nextDouble())),
       Role.Pursuer -> (_ => Mirror),
       Role.Pursuer -> (random => LeadPursuit(random.nextDouble())),
       Role.Pursuer -> (random => Surrounding(0, within(random, 5, 9), 8)),
@@ -165,6 +165,10 @@ object AnyPolicySimulation:
       val next  =
         if angle.abs > 0.5 then Phase(angle.min(0.5).max(-0.5), !memory.isLeft) else memory.copy(angle)
       (heading(seen, towards(seen, seen.opponent) * -1, next.angle), next)
+
+  final case class Circling(rate: Double) extends Forgetful:
+    def action(seen: Observation): Action =
+      Action.Along(Radians(rate * seen.time.toSeconds), MetresPerSecond(5), seen.startDown)
 
   case object Ages extends Forgetful:
     def action(seen: Observation): Action =

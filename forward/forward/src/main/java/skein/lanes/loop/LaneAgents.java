@@ -88,7 +88,12 @@ public abstract class LaneAgents {
    */
   private final int[] decidedAt = new int[WORLDS], decidedLong = new int[WORLDS];
 
+  /** When the vehicle's reading of its first decision was sampled, s; only where {@link #timeAt} is used. */
+  private final float[] firstReadS = new float[WORLDS];
+
   public int now;
+
+  private double rowS;
 
   private final int[] drawn = new int[2 * LANES];
 
@@ -130,6 +135,7 @@ public abstract class LaneAgents {
   /** Resets to the start of an episode; the subclass sets the commands and decisions that precede it. */
   public void start() {
     now = 0;
+    rowS = 0;
     for (int[] zero : new int[][] {ready, reaches, decidedAt}) Arrays.fill(zero, 0);
     Arrays.fill(sentAt, -1);
     for (int[] each : answered) Arrays.fill(each, -1);
@@ -171,6 +177,7 @@ public abstract class LaneAgents {
 
   public void startRow(int row) {
     now = row * periodGrains;
+    rowS = (double) row * periodGrains * LaneViews.GRAIN_NS * 1e-9;
     if (row % Math.max(1, (1 << LONG) / periodGrains) == 0) drawNear();
   }
 
@@ -453,6 +460,28 @@ public abstract class LaneAgents {
   protected final void age(int vehicle, int[][] readAt, float[] into) {
     if (forecast != null) System.arraycopy(forecast.age(vehicle), 0, into, 0, WORLDS);
     else sinceRead(vehicle, readAt, into);
+  }
+
+  /** Computes the time at which the command of a decision takes effect, since the vehicle was first read, s.
+   *
+   * @param ageS age of the vehicle's own reading at the decision, s
+   */
+  protected final void timeAt(float[] ageS, float[] into) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector at =
+          ((FloatVector) IntVector.fromArray(INTS, decides, i).convertShape(VectorOperators.I2F, SPECIES, 0))
+              .mul(LaneViews.GRAIN_S)
+              .add((float) rowS);
+      VectorMask<Float> isFirst =
+          IntVector.fromArray(INTS, decidedLong, i).compare(VectorOperators.GE, NEVER / 2).cast(SPECIES);
+      FloatVector first =
+          FloatVector.fromArray(SPECIES, firstReadS, i)
+              .blend(at.sub(FloatVector.fromArray(SPECIES, ageS, i)), isFirst);
+      first.intoArray(firstReadS, i);
+      FloatVector since = at.sub(first);
+      (forecast == null ? since : since.add(FloatVector.fromArray(SPECIES, forecast.actsS(), i)))
+          .intoArray(into, i);
+    }
   }
 
   /** Computes the time from a vehicle's present reading to the decision, s. */

@@ -22,6 +22,7 @@ private[lanes] final case class OpponentLanes private (
 ) extends TeamPolicies:
   def count: Int         = 2
   def needsMore: Boolean = false
+  def asksTime: Boolean  = false
   def sideBySide: Int    = LaneMath.LANES
 
   lazy val eyes: Map[Int, SensorModel] =

@@ -61,6 +61,7 @@ private[lanes] final class TeamLanes private (
         case PolicyInput.Age(vehicle)   => own(Own.Age + vehicle)
         case PolicyInput.Elapsed        => own(Own.Elapsed)
         case PolicyInput.ActsIn         => own(Own.ActsIn)
+        case PolicyInput.Time           => own(Own.Time)
         case PolicyInput.Cruise         => own(Own.Cruise)
         case PolicyInput.StartDown      => own(Own.StartDown)
         case PolicyInput.Memory(number) => own(Own.Memory + number)
@@ -154,15 +155,18 @@ private[lanes] final class TeamLanes private (
       field == 2 || field == 3
     )))
 
-  /** For each vehicle: whether it needs ages of readings, commands of other vehicles, or the time until its
-    * command takes effect.
+  /** For each vehicle: whether it needs ages of readings, commands of other vehicles, or the time at which
+    * its command takes effect, or until then.
     */
   val asksMore: Vector[Boolean] = sources.map(_.exists:
-    case _: (Source.Age | Source.KnownCos | Source.KnownSin) | Source.ActsIn => true
-    case _                                                                   => false)
+    case _: (Source.Age | Source.KnownCos | Source.KnownSin) | Source.ActsIn | Source.Time => true
+    case _                                                                                 => false)
 
-  /** By vehicle: whether it needs ages of readings. */
-  val asksAges: Vector[Boolean] = sources.map(_.exists(_.isInstanceOf[Source.Age]))
+  /** By vehicle: whether it needs ages of readings. The time counts from the first reading. */
+  val asksAges: Vector[Boolean] =
+    sources.map(_.exists(source => source.isInstanceOf[Source.Age] || source == Source.Time))
+
+  val asksTime: Boolean = sources.exists(_.contains(Source.Time))
 
   /** Whether some vehicle needs altitudes of vehicles. */
   val looksUp: Boolean = sources.exists(_.exists(_.isInstanceOf[Source.Altitude]))
@@ -212,7 +216,8 @@ private[lanes] object TeamLanes:
     final val ActsIn     = 3
     final val Cruise     = 4
     final val StartDown  = 5
-    final val Age        = 6
+    final val Time       = 6
+    final val Age        = 7
     final val KnownCos   = Age + Engagement.Most
     final val KnownSin   = KnownCos + Engagement.Most
     final val Altitude   = KnownSin + Engagement.Most
@@ -232,6 +237,7 @@ private[lanes] object TeamLanes:
           case Sin     => Source.Sin
           case Elapsed => Source.Elapsed
           case ActsIn  => Source.ActsIn
+          case Time    => Source.Time
           case Cruise  => Source.Cruise
           case _       => Source.StartDown
 
@@ -246,7 +252,7 @@ private[lanes] object TeamLanes:
   private def sharedInput(number: Int) = FirstShared + number
 
   enum Source:
-    case Cos, Sin, Elapsed, ActsIn, Cruise, StartDown
+    case Cos, Sin, Elapsed, ActsIn, Time, Cruise, StartDown
     case Age(vehicle: Int)
     case KnownCos(vehicle: Int)
     case KnownSin(vehicle: Int)

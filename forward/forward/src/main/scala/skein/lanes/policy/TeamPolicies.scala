@@ -13,6 +13,9 @@ private[lanes] trait TeamPolicies:
   /** Whether decisions need more than the readings and the vehicles' own decision times. */
   def needsMore: Boolean
 
+  /** Whether decisions depend on the time since the start. */
+  def asksTime: Boolean
+
   /** The camera of each vehicle that knows its one opponent only through a camera. */
   def eyes: Map[Int, SensorModel]
 

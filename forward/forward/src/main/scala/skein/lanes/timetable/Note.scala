@@ -52,8 +52,9 @@ private[lanes] object Note:
     * @param known number of the last decision that was sent to each vehicle
     * @param agesS age of each vehicle's reading
     * @param actsInS time until the command takes effect; 0 in loops without predictions
+    * @param timeS time at which the command takes effect, since the vehicle was first read
     */
-  final class More(val known: Array[Int], val agesS: Array[Double], val actsInS: Double)
+  final class More(val known: Array[Int], val agesS: Array[Double], val actsInS: Double, val timeS: Double)
 
   /** The command of a decision takes effect. */
   final case class Act(vehicle: Int, atS: Double, decision: Int) extends Note

@@ -96,14 +96,22 @@ private[skein] object Timetable:
     * @param headings slots of each vehicle's last known commanded heading
     * @param agesS ages of the readings, s
     * @param actsInS time until the command takes effect, by decision, s
+    * @param timeS time at which the command takes effect, since the vehicle was first read, by decision, s
     */
-  final class More(vehicles: Int, headings: Array[Int], agesS: Array[Float], val actsInS: Array[Float]):
+  final class More(
+      vehicles: Int,
+      headings: Array[Int],
+      agesS: Array[Float],
+      val actsInS: Array[Float],
+      val timeS: Array[Float]
+  ):
     def heading(decision: Int, vehicle: Int): Int = headings(decision * vehicles + vehicle)
     def ageS(decision: Int, vehicle: Int): Float  = agesS(decision * vehicles + vehicle)
-    private[timetable] def bytes: Long            = 4L * (headings.length + agesS.length + actsInS.length)
+    private[timetable] def bytes: Long            = 4L * (headings.length + agesS.length + 2 * actsInS.length)
 
   object More:
-    val None: More = More(0, Array.emptyIntArray, Array.emptyFloatArray, Array.emptyFloatArray)
+    val None: More =
+      More(0, Array.emptyIntArray, Array.emptyFloatArray, Array.emptyFloatArray, Array.emptyFloatArray)
 
 /** Sorts events by their times, assigns slots to readings and headings until their last use, and encodes the
   * times for each vehicle.
@@ -141,11 +149,11 @@ private final class TimetableCompiler(
   private var count        = 0
 
   // Further inputs of decisions.
-  private val knownHeadings  = Array.newBuilder[Int]
-  private val agesS, actsInS = Array.newBuilder[Float]
-  private var toldDecisions  = 0
-  private val endAgesS       = Array.newBuilder[Float]
-  private var ends           = 0
+  private val knownHeadings         = Array.newBuilder[Int]
+  private val agesS, actsInS, timeS = Array.newBuilder[Float]
+  private var toldDecisions         = 0
+  private val endAgesS              = Array.newBuilder[Float]
+  private var ends                  = 0
 
   private val operations = Array.ofDim[Int](end * Fields)
   private val numbers    = Timetable.LeastNumbers.max(clocks.map(_.numbers).max)
@@ -175,7 +183,7 @@ private final class TimetableCompiler(
       propagations.result(),
       readings.map(_.size).max,
       headings.map(_.size).max,
-      Timetable.More(vehicles, knownHeadings.result(), agesS.result(), actsInS.result()),
+      Timetable.More(vehicles, knownHeadings.result(), agesS.result(), actsInS.result(), timeS.result()),
       endAgesS.result()
     )
 
@@ -275,6 +283,7 @@ private final class TimetableCompiler(
       knownHeadings += headings(each).place(more.known(each))
       agesS += more.agesS(each).toFloat
     actsInS += more.actsInS.toFloat
+    timeS += more.timeS.toFloat
     toldDecisions += 1
     toldDecisions - 1
 

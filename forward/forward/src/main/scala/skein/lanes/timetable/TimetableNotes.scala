@@ -29,6 +29,9 @@ private[lanes] final class TimetableNotes(
   /** For each vehicle, the number of readings so far, including predictions; and the number of decisions. */
   val looks, decisions: Array[Int] = Array.ofDim[Int](vehicles)
 
+  /** By vehicle: when its reading of its first decision was sampled. */
+  private val firstReadNs = Array.fill(vehicles)(Long.MinValue)
+
   /** The readings' numbers, by view, then by vehicle. */
   val views: mutable.ArrayBuffer[Array[Int]] = mutable.ArrayBuffer.empty
 
@@ -97,6 +100,7 @@ private[lanes] final class TimetableNotes(
     def aheadS        = upon.forecast.fold(-1.0): forecast =>
       val now = Instant.ofNanos(atNs)
       forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
+    if firstReadNs(vehicle) == Long.MinValue then firstReadNs(vehicle) = upon.validAtNs(vehicle)
     val opponent = Option.when(vehicles == 2)(1 - vehicle)
     all += Note.Decide(
       vehicle,
@@ -109,7 +113,9 @@ private[lanes] final class TimetableNotes(
       opponent.fold(0.0)(ageS),
       Option.when(eyes.contains(vehicle))(aheadS),
       Option.when(tellsMore):
-        Note.More(upon.sentDecision.clone, Array.tabulate(vehicles)(ageS), aheadS.max(0))
+        val actsInS = aheadS.max(0)
+        val timeS   = (atNs - firstReadNs(vehicle)) * 1e-9 + actsInS
+        Note.More(upon.sentDecision.clone, Array.tabulate(vehicles)(ageS), actsInS, timeS)
     )
     decisions(vehicle) += 1
     if end != OwnEnds.None then mayEnd(atNs, upon, ageS)
