@@ -47,7 +47,7 @@ def interpreted(text):
         **{"hypot": math.hypot, "min": min, "max": max, "lt": lambda a, b: a < b, "le": lambda a, b: a <= b},
         **{"eq": lambda a, b: a == b, "not": lambda a: not a, "and": lambda a, b: a and b, "or": lambda a, b: a or b},
         **{"where": lambda c, a, b: a if c else b, "always": lambda: True, "remainder": math.remainder},
-        **{"signum": lambda a: math.copysign(1, a) if a else a, "floor": math.floor, "tanh": math.tanh, "exp": math.exp},
+        **{"signum": lambda a: math.copysign(1, a) if a else a, "floor": math.floor, "rint": round, "tanh": math.tanh, "exp": math.exp},
     }
 
     def value(line, inputs):
@@ -133,6 +133,8 @@ def test_a_policy_runs_with_plain_numbers_as_it_stands():
     assert ring.Ring().gap(Moment([Known(), Known(north_m=1.0), Known(north_m=-1.0)])) == 180
     assert f.where(True, 1, 2) == 1 and f.clip(5, 0, 3) == 3 and f.minimum(3.0, 2.0, 1.0) == 1.0
     assert f.tanh(np.zeros(2)).tolist() == [0, 0] and f.pick(1, "abc") == "b"
+    with pytest.raises(AttributeError, match="'Known' object has no attribute 'hypot'"):
+        scenario(lambda seen: seen.own.hypot).text()
 
 
 def test_numpy_and_its_arrays_are_written_down_too():
@@ -212,6 +214,8 @@ WRONG = [
     ("x = np.maximum(0, np.array([seen.own.north_m, 1.0]))", "branches .* write maximum\\(a, b\\) of skein_uav.formula"),
     ("x = np.array([seen.own.north_m]); x = f.where(x > 0, x, 0.0)", "branches .* write maximum or minimum of"),
     ("x = np.sin(np.array([seen.own.north_m, 1.0]))", "NumPy has no sin for this array; write sin of skein_uav.formula"),
+    ("x = np.arctan2(np.array([1.0, seen.own.north_m]), 2.0)", "NumPy has no arctan2 for this array; write arctan2 of"),
+    ("x = np.rad2deg(np.array([seen.own.north_m]))", "NumPy has no rad2deg for this array; nor have formulas"),
     ("x = seen.own.north_m ** seen.own.east_m", "raises to a power; write a product, or sqrt, or exp"),
     ("x = (seen.own.north_m > 3) * 2.0", "computes with a condition; write where\\(condition, 1.0, 0.0\\)"),
     ("x = f.where(seen.own.north_m, 1, 2)", "takes a number for a condition; write a comparison"),

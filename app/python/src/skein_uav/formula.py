@@ -14,7 +14,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -130,7 +130,7 @@ def where(condition: Any, a: Any, b: Any) -> Any:
         }
         return dataclasses.replace(a, **parts)
     if isinstance(a, (tuple, list)) and type(a) is type(b) and len(a) == len(b):
-        return type(a)(where(condition, one, other) for one, other in zip(a, b, strict=True))
+        return like(a, (where(condition, one, other) for one, other in zip(a, b, strict=True)))
     if isinstance(a, Condition) or isinstance(b, Condition) or (isinstance(a, bool) and isinstance(b, bool)):
         return logical_or(logical_and(condition, a), logical_and(logical_not(condition), b))
     if a is b:
@@ -143,10 +143,16 @@ def where(condition: Any, a: Any, b: Any) -> Any:
     return made
 
 
+def like(of: Any, values: Iterable[Any]) -> Any:
+    """A tuple, a named tuple or a list, of the type of another."""
+    return getattr(type(of), "_make", type(of))(values)
+
+
 def pick(index: Any, values: Sequence[Any]) -> Any:
-    """The value at an index that may be known only in flight; beyond the last one, the last one."""
-    if not isinstance(index, Symbol):
-        return values[int(index)]
+    """The value at the nearest index from 0 to the last; halfway between two, at the greater one.
+
+    The index may be known only in flight, and need not be whole: at 0.7 and 1 it is the second value, at -1 the first.
+    """
     chosen = values[-1]
     for place in range(len(values) - 2, -1, -1):
         chosen = where(index < place + 0.5, values[place], chosen)
@@ -172,6 +178,9 @@ _OF_NUMPY: dict[str, Callable[..., Any]] = {
     "absolute": abs,
     "fabs": abs,
     "square": lambda a: a * a,
+    "floor_divide": lambda a, b: a // b,
+    "remainder": lambda a, b: a % b,
+    "divmod": divmod,
     "power": lambda a, b: a**b,
     "less": lambda a, b: operation("lt", a, b),
     "less_equal": lambda a, b: operation("le", a, b),

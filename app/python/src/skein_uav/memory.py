@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .formula import like
 from .symbols import Condition, Number
 from .untraceable import Untraceable, shown
 
@@ -39,7 +40,7 @@ def filled(memory: Any, held: Iterator[Any]) -> Any:
             made[place] = next(held)
         return made
     if isinstance(memory, (tuple, list)):
-        return type(memory)(filled(each, held) for each in memory)
+        return like(memory, (filled(each, held) for each in memory))
     return next(held)
 
 

@@ -399,7 +399,7 @@ class Scenario:
 
         try:
             return Writer(self).file()
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, AttributeError) as error:
             if (better := explained(error)) is None:
                 raise
             raise better.with_traceback(error.__traceback__) from None

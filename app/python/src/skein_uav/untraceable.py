@@ -8,6 +8,8 @@ import sys
 import traceback
 from typing import Any
 
+import numpy as np
+
 from .errors import SkeinError
 from .places import is_users, place
 
@@ -32,10 +34,10 @@ def explained(error: Exception) -> Untraceable | None:
         return None
     if re.search(r"could not convert string to float: '<.*>'", str(error)):
         return _at(*frames[-1], f"{VALUE}; a text of it is no number: leave it a number")
-    lacking = re.search(r"has no callable (\w+) method", str(error))
-    if lacking is None:
+    lacking = re.search(r"(?:has no callable|'(?:float|int|bool|Number)' object has no attribute) '?(\w+)", str(error))
+    name = lacking[1] if lacking else ""
+    if not isinstance(getattr(np, name, None), np.ufunc):
         return None
-    name = lacking[1]
     instead = f"write {name} of skein_uav.formula, which takes arrays" if name in _KNOWN else "nor have formulas"
     return _at(*frames[-1], f"NumPy has no {name} for this array; {instead}")
 
