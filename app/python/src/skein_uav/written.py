@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import copy
-import dataclasses
 import math
 import re
 from collections.abc import Callable, Iterable, Sequence
@@ -16,12 +14,9 @@ from .lines import Lines, quoted
 from .memory import filled, form, leaves
 from .places import place_of
 from .scenario import Known, Limit, Measure, Moment, Observation, Scenario, Series, Vehicle
+from .settings import symbolic
 from .symbols import Condition, Graph, Number, constant
 from .untraceable import Untraceable, refused, shown
-
-
-def _key(name: str) -> str:
-    return name.lower().replace("_", "-")
 
 
 class Writer:
@@ -34,17 +29,7 @@ class Writer:
         if not re.fullmatch(r"[a-z][a-z0-9]*(-[a-z0-9]+)*", self.name):
             what = f"the name {scenario.name!r}" if scenario.name else f"the class {type(scenario).__name__}"
             raise ValueError(f"expected a name of Latin letters, such as name = 'my-patrol', got {what}")
-        self.settings: list[tuple[str, float, str]] = []
-        self.scenario = copy.copy(scenario)
-        for each in dataclasses.fields(scenario) if dataclasses.is_dataclass(scenario) else ():
-            value = getattr(scenario, each.name)
-            if isinstance(value, float) or (isinstance(value, int) and each.type in (float, "float")):
-                value = float(value)
-                if not math.isfinite(value):
-                    raise ValueError(f"{each.name}: expected a finite number, got {value}")
-                key = _key(each.name)
-                self.settings.append((key, value, each.metadata.get("meaning", "")))
-                object.__setattr__(self.scenario, each.name, self.graph.leaf("setting", key))
+        self.scenario, self.settings = symbolic(scenario, self.graph)
 
     def file(self) -> tuple[str, dict[int, str]]:
         """The text of the file, and the places in Python of its lines, by their numbers."""
