@@ -1,5 +1,6 @@
 from dataclasses import dataclass
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -129,6 +130,12 @@ def test_options_become_flags():
     assert arguments.flags({"period_ms": 50, "deadline_s": 0.5, "period": "50ms"}) == [
         *("--period", "50ms", "--deadline", "0.5s", "--period", "50ms"),
     ]
+
+
+def test_settings_are_named_and_written_as_skein_reads_them():
+    settings = {"ring_m": 6, "start-m": 2.5, "is_open": True, "is_shut": np.bool_(False)}
+    assert arguments.texts(settings) == {"ring-m": "6", "start-m": "2.5", "is-open": "true", "is-shut": "false"}
+    assert arguments.set_to({"ring_m": 6}) == ["ring-m=6"] and arguments.texts(None) == {}
 
 
 WRONG = [

@@ -12,6 +12,8 @@ from numbers import Real
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .errors import SkeinError
 from .scenario import Scenario
 from .untraceable import shown
@@ -118,13 +120,17 @@ def key(name: str) -> str:
     return name.replace("_", "-")
 
 
+def texts(settings: Mapping[str, Any] | None) -> dict[str, str]:
+    """Settings of a scenario as Skein names and reads them."""
+    return {
+        key(name): str(value).lower() if isinstance(value, (bool, np.bool_)) else str(value)
+        for name, value in (settings or {}).items()
+    }
+
+
 def set_to(settings: Mapping[str, Any] | None) -> list[str]:
     """The values of ``--set``."""
-
-    def text(value: Any) -> Any:
-        return str(value).lower() if isinstance(value, bool) else value
-
-    return [f"{key(name)}={text(value)}" for name, value in (settings or {}).items()]
+    return [f"{name}={value}" for name, value in texts(settings).items()]
 
 
 def varied(vary: Mapping[str, tuple[float, float]] | None) -> list[str]:

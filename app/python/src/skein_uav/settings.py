@@ -18,9 +18,6 @@ from .symbols import Graph, Number, Symbol
 from .untraceable import Untraceable, explained
 
 
-_CHANGEABLE = (list, dict, set, np.ndarray)
-
-
 def symbolic(scenario: Any, graph: Graph) -> tuple[Any, list[tuple[str, float, str]]]:
     """A copy of a scenario whose settings are symbols; and each setting's key, default and meaning.
 
@@ -83,8 +80,9 @@ def _built(scenario: Any, fields: Mapping[str, Any], now: Mapping[str, Any], gra
     given = inspect.signature(kind.__init__).bind(scenario, *args, **options)
 
     def made_of(arguments: Mapping[str, Any]) -> Any:
-        # Its code may change lists.
-        given.arguments.update({name: copy.copy(one) for name, one in arguments.items() if isinstance(one, _CHANGEABLE)})
+        for name, one in arguments.items():
+            if isinstance(one, (list, dict, set, np.ndarray)):  # which its code may change
+                given.arguments[name] = copy.copy(one)
         return kind(*given.args[1:], **given.kwargs)
 
     first = dict(given.arguments)
