@@ -1,7 +1,10 @@
 """Numbers that are known in flight alone compute what floats compute. None of these tests needs Java."""
 
+import copy
+import dataclasses
 import math
 import random
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -88,6 +91,32 @@ def test_numpys_numbers_are_compared_from_both_sides(function):
     xs = [1.0, 2.0, 3.0]
     chosen = computed(lambda x, y: f.where(function(x, y), 1.0, y), xs, [0.0] * 3)
     assert chosen == [float(function(x, 0.0)) for x in xs]
+
+
+@dataclass(frozen=True)
+class Clock:
+    rad: float = 0.0
+    turns: float = field(default=0.0, init=False)
+
+
+def test_a_memory_may_be_copied_and_have_fields_of_its_own():
+    def policy(seen, memory):
+        copied = copy.deepcopy(memory)
+        object.__setattr__(copied, "turns", copied.turns + dataclasses.asdict(memory)["rad"])
+        return seen.along(memory.rad, 1.0), f.where(memory.rad > 1, copied, memory)
+
+    text = scenario(policy, Clock()).text()
+    remembers = [line.split()[2] for line in text.splitlines() if line.startswith("remembers")]
+    for rad, turns in ((0.5, 3.0), (2.0, 5.0)):
+        values = interpreted(text)(inputs_of(Observation(0, [Known(), Known()]), None, [rad, 3.0]))
+        assert [values[int(one)] for one in remembers] == [rad, turns]
+
+
+def test_one_of_two_arrays_is_chosen():
+    def chosen(x, y):
+        return f.where(x > 1, np.array([x, 2.0]), y).sum() + f.where(x > 1, np.eye(2), np.zeros((2, 2)))[1, 1]
+
+    assert computed(chosen, [0.0, 3.0], [4.0, 4.0]) == [8.0, 6.0]
 
 
 def test_a_power_is_a_whole_number_of_numpys_too():

@@ -11,10 +11,11 @@ Operators, NumPy's functions and those of this module take both: ``sin``, ``cos`
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import functools
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -116,7 +117,8 @@ def logical_not(a: Any) -> Any:
 def where(condition: Any, a: Any, b: Any) -> Any:
     """`a` where the condition holds, else `b`.
 
-    Both are computed. They may be numbers, conditions, actions, or dataclasses, tuples and lists of these, of one form.
+    Both are computed. They may be numbers, conditions, actions, or arrays, dataclasses, tuples and lists of these, of
+    one form.
     """
     if not isinstance(condition, Symbol):
         return a if condition else b
@@ -128,7 +130,10 @@ def where(condition: Any, a: Any, b: Any) -> Any:
         parts = {
             each.name: where(condition, getattr(a, each.name), getattr(b, each.name)) for each in dataclasses.fields(a)
         }
-        return dataclasses.replace(a, **parts)
+        return replaced(a, parts)
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        one, other = np.broadcast_arrays(np.asarray(a, dtype=object), np.asarray(b, dtype=object))
+        return np.array([where(condition, *both) for both in zip(one.flat, other.flat)], dtype=object).reshape(one.shape)
     if isinstance(a, (tuple, list)) and type(a) is type(b) and len(a) == len(b):
         return like(a, (where(condition, one, other) for one, other in zip(a, b, strict=True)))
     if isinstance(a, Condition) or isinstance(b, Condition) or (isinstance(a, bool) and isinstance(b, bool)):
@@ -140,6 +145,14 @@ def where(condition: Any, a: Any, b: Any) -> Any:
     made = operation("where", condition, a, b)
     if made is NotImplemented:
         raise refused(f"where takes two of one kind, got {type(a).__name__} and {type(b).__name__}")
+    return made
+
+
+def replaced(of: Any, parts: Mapping[str, Any]) -> Any:
+    """A copy of a dataclass with other values, also of fields that it computes itself."""
+    made = copy.copy(of)
+    for name, part in parts.items():
+        object.__setattr__(made, name, part)
     return made
 
 

@@ -60,6 +60,12 @@ class Symbol:
     def __bool__(self) -> bool:
         raise refused(BRANCH)
 
+    def __copy__(self) -> Any:
+        return self
+
+    def __deepcopy__(self, _: Any) -> Any:
+        return self
+
     def __hash__(self) -> int:
         raise refused("it looks something up by a number that is known in flight alone; write pick(index, values)")
 
