@@ -392,6 +392,17 @@ def test_both_sides_may_turn_by_a_rate():
     straight = seen("Evasion", 0.0)
     np.testing.assert_allclose(seen("Evasion", 1.0, turn_rate_rad_per_s=0.001), straight, atol=0.05)
     assert np.abs(seen("Evasion", 1.0) - straight).max() > 1
+
+    def turned(**settings):
+        from skein_uav.parallel import TeamParallelEnv
+
+        actions = {"evader": np.ones(1, np.float32), "pursuer": np.zeros(1, np.float32)}
+        with contextlib.closing(TeamParallelEnv(link="none", **settings)) as env:
+            env.reset(seed=1)
+            sines = [env.step(actions)[0]["evader"][5] for _ in range(20)]
+        return max(sines) - min(sines)
+
+    assert turned(turn_rate_rad_per_s=0.001) < 0.05 < turned(turn_rate_rad_per_s=1.0)
     with pytest.raises(ValueError, match="turn_rate_rad_per_s: expected"):
         gym.make("skein_uav/Pursuit-v0", turn_rate_rad_per_s=100.0)
 

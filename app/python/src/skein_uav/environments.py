@@ -206,11 +206,10 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             "moves_in_flight": moves_in_flight,
             "scenario": scenario,
             "objective": objective,
+            "turn_rate_rad_per_s": turn_rate_rad_per_s,
             "climb_mps": climb_mps,
         }
         texts |= {f"set.{name}": value for name, value in arguments.texts(settings).items()}
-        if turn_rate_rad_per_s is not None:
-            texts |= {"turn_rate_rad_per_s": turn_rate_rad_per_s, "evader_rate_rad_per_s": turn_rate_rad_per_s}
         self._backend = open_batch(texts, num_envs, self.autoreset_mode, backend)
         self._block = self._backend.block
         if len(self._backend.learners) > 1:
@@ -385,6 +384,7 @@ def open_batch(settings: dict[str, Any], count: int, autoreset: AutoresetMode, b
     moves = settings.get("moves_in_flight")
     if moves is not None and (not isinstance(moves, (int, np.integer)) or isinstance(moves, bool)):
         raise ValueError(f"moves_in_flight: expected a whole number, got {moves!r}")
+    settings = {"evader_rate_rad_per_s": settings.get("turn_rate_rad_per_s"), **settings}
     texts = {name: str(value) for name, value in settings.items() if value is not None}
     climbs = (settings.get("climb_mps") or 0) > 0
     number = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP, AutoresetMode.DISABLED].index(autoreset)

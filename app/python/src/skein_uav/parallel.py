@@ -47,7 +47,7 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
         As in `skein_uav.environments.PursuitVectorEnv`.
     **others
         ``loop``, ``link``, ``period_ms``, ``plant``, ``sensors``, ``altitude_m``, ``episode_s``, ``capture_radius_m``,
-        ``start_within_m``, ``moves_in_flight``, ``climb_mps`` and ``objective``, as in `PursuitVectorEnv`.
+        ``start_within_m``, ``moves_in_flight``, ``turn_rate_rad_per_s``, ``climb_mps`` and ``objective``, as in `PursuitVectorEnv`.
     """
 
     metadata = {"name": "skein_uav_team_v0", "render_modes": ["rgb_array"], "render_fps": 10, "is_parallelizable": True}
@@ -75,7 +75,7 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
         self.agents: list[str] = []
         self.render_mode = render_mode
         # By name, too, as PettingZoo's wrappers and skrl read them.
-        climbs = others.get("climb_mps", 0) > 0
+        climbs = (others.get("climb_mps") or 0) > 0
         self.observation_spaces = {agent: observation_space(climbs) for agent in self.possible_agents}
         self.action_spaces = {agent: action_space(climbs) for agent in self.possible_agents}
         self._random = np.random.default_rng()
