@@ -220,6 +220,7 @@ WRONG = [
     ("x = (seen.own.north_m > 3) * 2.0", "computes with a condition; write where\\(condition, 1.0, 0.0\\)"),
     ("x = f.where(seen.own.north_m, 1, 2)", "takes a number for a condition; write a comparison"),
     ("x = f.sin('a') + f.hypot(seen.own.north_m, 'a')", "must be real number"),
+    ("x = f.atan2(seen.own.north_m)", "atan2.. takes 2 numbers, got 1"),
     ("x, y = seen.own.north_m", "one number, not several"),
     ("return seen.own.north_m", "expected an action, such as seen.along\\(heading, speed\\), got Number"),
     ("return", "expected an action, .* got None; is a return missing\\?"),
@@ -234,7 +235,7 @@ def test_what_cannot_be_written_down_is_told_with_its_line_and_what_to_write(lin
     file.write_text(f"def policy(seen):\n    {line}\n    return seen.along(0.0, 1.0)\n")
     names = {"math": math, "np": np, "f": f}
     exec(compile(file.read_text(), str(file), "exec"), names)
-    expected = TypeError if "real number" in told else Untraceable
+    expected = TypeError if "real number" in told or "takes 2" in told else Untraceable
     with pytest.raises(expected, match=f"(?s){told}") as caught:
         scenario(names["policy"]).text()
     if expected is Untraceable:
@@ -269,6 +270,8 @@ SLIPS = [
     (lone(measures=lambda self: [gap(9).mean("gap")]), "reads vehicle 9 of a team of vehicles 0 to 0"),
     (lone(measures=lambda self: [Series("way", "rad", lambda now: now.vehicles[0].heading_rad).mean("way")]),
      "py:[0-9]+: the series way: expected positions, .* in a measure, got heading_rad"),
+    (lone(measures=lambda self: [gap(0).mean("a"), Series("gap", "m", lambda now: now.elapsed_s).mean("b")]),
+     "py:[0-9]+: the series gap: expected a name of its own for each series, got 'gap' twice"),
     (lone(vehicles=lambda self: None), "expected a list of Vehicle .*, got None; is a return missing"),
     (Scenario(), "expected a method vehicles.. of Scenario, got none"),
     (lone(3.0), "expected a function as the policy of Own, got float 3.0"),

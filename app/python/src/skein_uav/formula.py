@@ -3,6 +3,8 @@
 A policy or a measure is an ordinary function. Called with floats, it computes with floats. A scenario (see
 `skein_uav.scenario`) calls it once with symbolic numbers and traces its computation, which every engine executes.
 
+A whole power is a product, so from the third on it may round otherwise than that of floats.
+
 Operators, NumPy's functions and those of this module take both: ``sin``, ``cos``, ``tan``, ``asin``, ``acos``, ``atan``,
 ``atan2``, ``hypot``, ``sqrt``, ``exp``, ``tanh``, ``floor``, ``ceil``, ``rint``, ``sign``, ``remainder``, ``wrap``,
 ``minimum``, ``maximum``, ``clip``, ``where``, ``logical_and``, ``logical_or``, ``logical_not``, ``pick`` and
@@ -25,8 +27,15 @@ from .untraceable import Untraceable as Untraceable
 from .untraceable import refused
 
 
+_OF_TWO = ("atan2", "hypot", "remainder", "min", "max")
+
+
 def _function(op: str, plain: Callable[..., Any], name: str, text: str) -> Any:
+    takes = 2 if op in _OF_TWO else 1
+
     def function(*args: Any) -> Any:
+        if len(args) != takes:
+            raise TypeError(f"{name}() takes {takes} number{'s' * (takes - 1)}, got {len(args)}")
         if any(isinstance(one, np.ndarray) and one.ndim > 0 for one in args):
             made = np.frompyfunc(function, len(args), 1)(*args)
             return made if any(isinstance(one, Symbol) for one in made.flat) else made.astype(float)
@@ -52,7 +61,7 @@ asin = _function("asin", math.asin, "asin", "Arc sine, rad.")
 acos = _function("acos", math.acos, "acos", "Arc cosine, rad.")
 atan = _function("atan", math.atan, "atan", "Arc tangent, rad.")
 atan2 = _function("atan2", math.atan2, "atan2", "Angle of the point (x, y), given y first, rad.")
-hypot = _function("hypot", math.hypot, "hypot", "Length of the vector (x, y).")
+_hypot = _function("hypot", math.hypot, "hypot", "Length of the vector (x, y).")
 sqrt = _function("sqrt", math.sqrt, "sqrt", "Square root.")
 exp = _function("exp", math.exp, "exp", "Power of e.")
 tanh = _function("tanh", math.tanh, "tanh", "Hyperbolic tangent.")
@@ -64,6 +73,11 @@ remainder = _function("remainder", math.remainder, "remainder", "x minus the nea
 _minimum = _function("min", min, "minimum", "The lesser of two numbers.")
 _maximum = _function("max", max, "maximum", "The greater of two numbers.")
 arctan2, arcsin, arccos, arctan = atan2, asin, acos, atan
+
+
+def hypot(x: Any, y: Any, *others: Any) -> Any:
+    """Length of the vector (x, y), or of one with more numbers."""
+    return functools.reduce(_hypot, others, _hypot(x, y))
 
 
 def tan(x: Any) -> Any:

@@ -186,11 +186,8 @@ class Writer:
 
     def drawn(self, count: int) -> None:
         measures = self.listed("measures", Measure)
-        series: list[Series] = []
+        known: dict[str, tuple[Any, ...]] = {}
         for one in [*(each.of for each in measures), *self.listed("series", Series)]:
-            if one.name not in [each.name for each in series]:
-                series.append(one)
-        for one in series:
             self.lines.at = f"{place_of(one.of)}: the series {one.name}"
             value = self.number(one.of(self.moment(count, object())), "its value")
             unknown = self.graph.inputs(value.node) & {"heading", "age"}
@@ -199,6 +196,11 @@ class Writer:
                 raise Untraceable(
                     f"{self.lines.at}: expected positions, velocities and elapsed_s alone in a measure, got {name}"
                 )
+            is_new, same = one.name not in known, (value.node, one.unit)
+            if known.setdefault(one.name, same) != same:
+                raise ValueError(f"{self.lines.at}: expected a name of its own for each series, got {one.name!r} twice")
+            if not is_new:
+                continue
             bound = [] if one.bound is None else ["bound", quoted(one.bound[0]), self.fixed(one.bound[1], "a bound")]
             self.lines.add("series", quoted(one.name), quoted(one.unit), value, *bound)
             self.lines.at = place_of(self.scenario.measures)
