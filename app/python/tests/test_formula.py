@@ -37,10 +37,11 @@ def drawn():
         *(lambda x, y: x % y, lambda x, y: x // y, lambda x, y: divmod(x, y)[0] + divmod(x, y)[1]),
         *(lambda x, y: x % 0.1, lambda x, y: x // -0.3, lambda x, y: 7.1 % y, lambda x, y: -7.1 // y),
         *(lambda x, y: f.hypot(x, y, 3.0), lambda x, y: f.hypot(x, y, x, y)),
+        *(lambda x, y: np.clip(x, a_min=y, a_max=None), lambda x, y: np.clip(x, -1, 1)),
         *(lambda x, y: np.mod(x, y), lambda x, y: np.floor_divide(x, y), lambda x, y: np.float64(0.7) % y),
     ],
 )
-def test_moduli_whole_quotients_and_lengths_are_those_of_floats(function):
+def test_moduli_whole_quotients_lengths_and_limits_are_those_of_floats(function):
     xs, ys = drawn()
     assert computed(function, xs, ys) == [function(x, y) for x, y in zip(xs, ys, strict=True)]
 

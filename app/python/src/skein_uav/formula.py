@@ -24,7 +24,7 @@ import numpy as np
 
 from .symbols import FUNCTIONS, UFUNCS, Condition, Number, Symbol, operation
 from .untraceable import Untraceable as Untraceable
-from .untraceable import refused
+from .untraceable import refused, shown
 
 
 _OF_TWO = ("atan2", "hypot", "remainder", "min", "max")
@@ -147,7 +147,8 @@ def where(condition: Any, a: Any, b: Any) -> Any:
         return replaced(a, parts)
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         one, other = np.broadcast_arrays(np.asarray(a, dtype=object), np.asarray(b, dtype=object))
-        return np.array([where(condition, *both) for both in zip(one.flat, other.flat)], dtype=object).reshape(one.shape)
+        made = [where(condition, *both) for both in zip(one.flat, other.flat, strict=True)]
+        return np.array(made, dtype=object).reshape(one.shape)
     if isinstance(a, (tuple, list)) and type(a) is type(b) and len(a) == len(b):
         return like(a, (where(condition, one, other) for one, other in zip(a, b, strict=True)))
     if isinstance(a, Condition) or isinstance(b, Condition) or (isinstance(a, bool) and isinstance(b, bool)):
@@ -158,7 +159,7 @@ def where(condition: Any, a: Any, b: Any) -> Any:
         return a
     made = operation("where", condition, a, b)
     if made is NotImplemented:
-        raise refused(f"where takes two of one kind, got {type(a).__name__} and {type(b).__name__}")
+        raise refused(f"where takes two of one kind, got {shown(a)} and {shown(b)}")
     return made
 
 
@@ -240,4 +241,11 @@ _OF_NUMPY: dict[str, Callable[..., Any]] = {
     "invert": logical_not,
 }
 UFUNCS.update(_OF_NUMPY)
-FUNCTIONS.update(where=where, clip=clip)
+
+
+def _clip_of_numpy(a: Any, a_min: Any = None, a_max: Any = None, *, min: Any = None, max: Any = None) -> Any:
+    least, most = a_min if min is None else min, a_max if max is None else max
+    return clip(a, -math.inf if least is None else least, math.inf if most is None else most)
+
+
+FUNCTIONS.update(where=where, clip=_clip_of_numpy)

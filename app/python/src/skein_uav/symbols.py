@@ -301,6 +301,8 @@ _CONDITIONS = ("lt", "le", "eq", "not", "and", "or", "always")
 def operation(op: str, *args: Any) -> Any:
     """An operation on numbers, at least one of which is symbolic."""
     first = next(one for one in args if isinstance(one, Symbol))
+    if op in ("div", "remainder") and isinstance(args[1], (int, float, np.number)) and args[1] == 0:
+        raise refused("it divides by 0")
     kind = Condition if op in ("not", "and", "or") else Number
     nodes, of = [], None
     for place, one in enumerate(args):

@@ -34,8 +34,8 @@ def explained(error: Exception) -> Untraceable | None:
         return None
     if re.search(r"could not convert string to float: '<.*>'", str(error)):
         return _at(*frames[-1], f"{VALUE}; a text of it is no number: leave it a number")
-    lacking = re.search(r"(?:has no callable|'(?:float|int|bool|Number)' object has no attribute) '?(\w+)", str(error))
-    name = lacking[1] if lacking else ""
+    lacking = re.search(_LACKING, str(error))
+    name = lacking[lacking.lastindex or 0] if lacking else ""
     if not isinstance(getattr(np, name, None), np.ufunc):
         return None
     instead = f"write {name} of skein_uav.formula, which takes arrays" if name in _KNOWN else "nor have formulas"
@@ -83,6 +83,10 @@ def _better(reason: str, code: str) -> str:
     return reason
 
 
+_LACKING = (
+    r"has no callable (\w+) method|^'(?:float|int|bool|Number)' object has no attribute '(\w+)'"
+    r"|^ufunc '(\w+)' not supported"
+)
 _KNOWN = frozenset(
     "sin cos tan asin acos atan atan2 arcsin arccos arctan arctan2 hypot sqrt exp tanh floor ceil rint sign remainder "
     "minimum maximum clip where".split()
@@ -107,6 +111,7 @@ _BRANCHES = [
     (r"\bmin\(", "minimum(a, b)"),
     (r"\bmax\(", "maximum(a, b)"),
     (r"(?:\bsorted|\.sort|\.median)\(", "smallest(items, key), or minimum and maximum of neighbours"),
+    (r"\b(?:any|all)\(", "logical_or or logical_and of one after the other"),
     (r"\b(?:argmin|argmax)\(", "smallest(items, key)"),
     (r"\band\b", "logical_and(a, b), or a & b with each comparison in parentheses"),
     (r"\bor\b", "logical_or(a, b), or a | b with each comparison in parentheses"),

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from .actions import Action, Choice, cases
+from .actions import Action, Choice, Yaw, cases
 from .answers import answered
 from .formula import where
 from .lines import Lines, quoted
@@ -172,6 +172,8 @@ class Writer:
             numbers = [
                 self.number(one, f"argument {place} of {action.kind}") for place, one in enumerate(action.numbers, 1)
             ]
+            if not isinstance(action.yaw, Yaw):
+                raise Untraceable(f"{self.lines.at}: expected a yaw, such as Yaw.forward(), got {shown(action.yaw)}")
             yaw: list[Any] = [] if action.yaw.kind == "still" else ["yaw", action.yaw.kind]
             if action.yaw.number is not None:
                 yaw.append(self.number(action.yaw.number, "a yaw"))
