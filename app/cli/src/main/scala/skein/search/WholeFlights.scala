@@ -155,7 +155,7 @@ object WholeFlights:
       )
     if plain.nonEmpty then
       Some(
-        s"${plain.mkString(", ")} is of whole flights: expected a mean, rms, sd, least or most of a quantity of positions and time"
+        s"${plain.mkString(", ")} is of whole flights: expected a reduction of a quantity of positions and time"
       )
     else if refused.nonEmpty then refused.map(why => s"its end is no formula: ${why.getMessage}")
     else

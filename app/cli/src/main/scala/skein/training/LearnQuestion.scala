@@ -129,7 +129,8 @@ final case class LearnSetup(
   val space: LearnerSpace  = LearnerSpace(question.climbMps > 0)
   val family: PolicyFamily = PolicyFamily.learned(LearnedPolicy.shape(question.learner.hidden, space))
 
-  private def isOfTeam = game.opponent.isEmpty
+  /** Whether it learned for an objective of a scenario, in place of the distance in a duel. */
+  def isOfTeam: Boolean = game.opponent.isEmpty
 
   /** The baseline of every result: the paper's policy of the role, or the result of the scenario's own
     * policies.
@@ -176,12 +177,13 @@ final case class LearnSetup(
   def task(using Scenarios): Either[String, SideTask] =
     SideTask.of(environment, game.opponent, question.environments, question.seed)
 
-  private def environment =
+  private[training] def environment: EnvironmentSettings =
     EnvironmentSettings(
       learners = question.role,
       loop = question.conditions.loop,
       link = question.link,
       periodMs = question.conditions.periodMs,
+      movesInFlight = question.conditions.movesInFlight,
       plant = question.conditions.plant,
       sensors = question.conditions.sensors.getOrElse(""),
       altitudeM = if isOfTeam then 0 else question.conditions.altitudeM,

@@ -232,7 +232,9 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
 
   // If delays are equal in both directions, a flight knows the true ages of its readings.
   for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
-    test(s"forward simulation repeats ${loop.label} over 100 ms, with a policy that depends on ages and the time"):
+    test(
+      s"forward simulation repeats ${loop.label} over 100 ms, with a policy that depends on ages and the time"
+    ):
       check(loop, profile("constant:100ms"), 1, AnyPolicies(byAges = true), Span.ofSeconds(6))
 
   test("forward simulation repeats stream over vpn as published: spread requests, a decision at each answer"):
