@@ -107,7 +107,8 @@ final class EnvironmentSimulator private (
 
     def act(action: Action, lasts: Span): Future[Answer] = action.byVelocity match
       case Action.Velocity(velocity, _)         => go(lasts)(_ => velocity)
-      case Action.VelocityAt(north, east, _, _) => go(lasts)(_ => Vector3(north, east, 0))
+      case Action.VelocityAt(north, east, down, _) =>
+        go(lasts)(now => Vector3(north, east, (down.value - now.positionNed.z).max(-MostClimbMps).min(MostClimbMps)))
       case Action.Position(place, speed, _)     =>
         go(lasts)(now => GoTo.velocityNed(now.positionNed, now.velocityNed, place, speed))
       case Action.Hover => hover()
@@ -144,6 +145,9 @@ final class EnvironmentSimulator private (
           velocities = velocities.updated(index, Vector3.Zero)
 
 object EnvironmentSimulator:
+  /** Greatest vertical speed towards a commanded altitude, m/s. */
+  private val MostClimbMps = 3.0
+
   private type Answer = Either[VehicleError, Boolean]
 
   /** Name and columns of its measurements in a recording; 1 stands for true. */

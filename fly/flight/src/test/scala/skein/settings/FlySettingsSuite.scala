@@ -113,6 +113,17 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "2: skein.fly.knows: expected all with a solver, which is told every command, got positions"
     )
 
+  test("a deadline or images that no chosen loop regards are refused"):
+    for loops <- Seq("paused", "plan", "paused, plan") do
+      assertTold(
+        s"deadline = 50ms, loops = [$loops]",
+        s"2: skein.fly.deadline: expected with a loop in which policies decide by the clock, got with $loops alone"
+      )
+    assertTold(
+      "images = [\"front_center@10\"], loops = [paused]",
+      "2: skein.fly.images: expected with a loop other than paused, which records none"
+    )
+
   test("how others are predicted is refused if their commands are known"):
     assertTold(
       "strangers = belief",

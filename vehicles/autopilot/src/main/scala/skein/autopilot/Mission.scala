@@ -57,6 +57,8 @@ object Mission:
       Some((Ack.Unsupported, Vector(s"mission item ${item.seq}: command ${item.command} unsupported")))
     else if isPlace && !frames(item.frame) then
       Some((Ack.UnsupportedFrame, Vector(s"mission item ${item.seq}: frame ${item.frame} unsupported")))
+    else if Set(Delay, LoiterTime)(item.command) && !item.param1.isFinite then
+      Some((Ack.Invalid, Vector(s"mission item ${item.seq}: its time is no number")))
     else if isPlace && !(item.z.isFinite && item.z.abs < 1e5) then
       Some((Ack.Invalid, Vector(s"mission item ${item.seq}: altitude is no number")))
     else if isPlace && !(item.x.abs <= 900_000_000 && item.y.abs <= 1_800_000_000) then
