@@ -101,9 +101,9 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
 
 /** [[Surround]] with a measure of whole flights. */
 final case class Whole() extends Scenario:
-  private def around                       = Surround(vehicles = 4)
-  def agents: Vector[skein.policy.Agent]   = around.agents
-  override def measures: Vector[Measure]   =
+  private def around                     = Surround(vehicles = 4)
+  def agents: Vector[skein.policy.Agent] = around.agents
+  override def measures: Vector[Measure] =
     around.measures :+ Measure("lasts", "s")(tracks => Some(tracks.lastS))
 
 /** Flies north until it is far enough, climbing: late commands overshoot. */

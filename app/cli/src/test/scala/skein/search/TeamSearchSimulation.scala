@@ -57,7 +57,8 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
 
   test("a measure of whole flights is searched world by world, and the engine's line states that"):
     val vary  = Vector(Varied("lane-m", 2, 10), Varied("spacing-m", 4, 12))
-    val ready = setup(question.copy("crossing", vary = vary, objective = "arrived", candidates = 4, episodes = 1))
+    val ready =
+      setup(question.copy("crossing", vary = vary, objective = "arrived", candidates = 4, episodes = 1))
     assert(ready.engines.matches("scalar: arrived is of whole flights.*"), ready.engines)
     assert(ready.rate(1).exists(_.matches("about [0-9,]+ a second")), ready.rate(1))
     assert(!ready.isVirtual && !ready.engine(ready.space.defaults, Judge.Candidates).fliesByLanes)

@@ -172,7 +172,6 @@ private[formula] final class Objects(
     case Null => refuse(s"it reads $name of nothing")
     case _    => refuse(s"it reads $name of a number")
 
-  /** Refuses later changes of an object. */
   private def freeze(id: Int): Unit = heap(id) match
     case Record(name, fields)    => change(id, Thing.Either(name, fields))
     case Elements(values, false) => change(id, Elements(values, isFrozen = true))

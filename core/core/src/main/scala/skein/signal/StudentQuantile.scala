@@ -1,6 +1,6 @@
 package skein.signal
 
-/** Quantiles of Student's distribution. */
+/** Quantiles of Student's distribution, by which intervals of a few normally distributed values are made. */
 object StudentQuantile:
   /** The 97.5 % quantile; with more than 30 degrees of freedom, that of the normal distribution. */
   def twoSided95(degrees: Int): Double =

@@ -106,10 +106,12 @@ final class EnvironmentSimulator private (
         failed.toLeft(Stamped(last.agents(index).kinematics, simulated, sentAt, clock.now()))
 
     def act(action: Action, lasts: Span): Future[Answer] = action.byVelocity match
-      case Action.Velocity(velocity, _)         => go(lasts)(_ => velocity)
+      case Action.Velocity(velocity, _)            => go(lasts)(_ => velocity)
       case Action.VelocityAt(north, east, down, _) =>
-        go(lasts)(now => Vector3(north, east, (down.value - now.positionNed.z).max(-MostClimbMps).min(MostClimbMps)))
-      case Action.Position(place, speed, _)     =>
+        go(lasts)(now =>
+          Vector3(north, east, (down.value - now.positionNed.z).max(-MostClimbMps).min(MostClimbMps))
+        )
+      case Action.Position(place, speed, _) =>
         go(lasts)(now => GoTo.velocityNed(now.positionNed, now.velocityNed, place, speed))
       case Action.Hover => hover()
       case other        =>

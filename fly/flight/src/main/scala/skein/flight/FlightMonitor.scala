@@ -29,13 +29,13 @@ final class FlightMonitor(
 
   /** The last answer that came after its time-out. */
   @volatile private var lastLate = Option.empty[Event]
-  private val clocks               = AtomicReference(TimeAxis.begun)
-  private val places               = AtomicReference(Map.empty[String, Stamped[Kinematics]])
-  private val landing              = AtomicReference(Set.empty[String])
-  private val firstAt              = AtomicLong(Long.MaxValue)
-  private val lastAt               = AtomicLong(Long.MinValue)
-  private val displaced            = AtomicReference(Option.empty[String])
-  private val moves                = AtomicReference(Map.empty[String, ForeignMoves])
+  private val clocks             = AtomicReference(TimeAxis.begun)
+  private val places             = AtomicReference(Map.empty[String, Stamped[Kinematics]])
+  private val landing            = AtomicReference(Set.empty[String])
+  private val firstAt            = AtomicLong(Long.MaxValue)
+  private val lastAt             = AtomicLong(Long.MinValue)
+  private val displaced          = AtomicReference(Option.empty[String])
+  private val moves              = AtomicReference(Map.empty[String, ForeignMoves])
 
   def offer(record: Recordable): Unit =
     record match

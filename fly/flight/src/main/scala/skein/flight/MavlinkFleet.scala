@@ -27,7 +27,7 @@ private[flight] final class MavlinkFleet(
   import MavlinkFleet.*
   import system.dispatcher
 
-  private val systems  = fleet.agents.indices.map(_ + 1).toVector
+  private val systems = fleet.agents.indices.map(_ + 1).toVector
   private val settings =
     // Vehicles climb to their layers first, and a team may start far apart.
     val starts = fleet.agents.map(_.startPositionNed)

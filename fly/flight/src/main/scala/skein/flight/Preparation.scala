@@ -73,8 +73,7 @@ final class Preparation(
                 Option.when(byTruth)(() => multirotor.groundTruth().map(_.left.map(_.message)))
               ),
               () => leaveGround(multirotor)
-            )
-          ,
+            ),
           index => commands(flying(index)._2.name)
         )
         .recoverWith:

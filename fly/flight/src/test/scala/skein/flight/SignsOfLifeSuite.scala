@@ -33,7 +33,13 @@ class SignsOfLifeSuite extends munit.FunSuite:
 
   test("if answers come after their time-out, the report of the silence says so"):
     assertEquals(
-      SimulatorWatchdog.silence("localhost:1", "1.0 s", None, at(2000), Some("getState answered after 520 ms")),
+      SimulatorWatchdog.silence(
+        "localhost:1",
+        "1.0 s",
+        None,
+        at(2000),
+        Some("getState answered after 520 ms")
+      ),
       "no answer from the simulator at localhost:1 for 1.0 s within the time-out of 500 ms: getState answered after 520 ms"
     )
 
