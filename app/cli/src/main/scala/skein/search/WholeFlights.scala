@@ -56,7 +56,7 @@ object WholeFlights:
     */
   val Never = 1e6
 
-  /** @return the weighted sum of a flight's measures; None if one has no value. A time that never came counts
+  /** @return the weighted sum of a flight's measures; None if one has no value. A time that is never reached counts
     *   as the duration, as in [[ScenarioTerm.value]].
     */
   def sum(terms: Vector[(Double, Measure)], flown: Tracks, durationS: Double): Option[Double] =

@@ -27,7 +27,7 @@ final class FlightMonitor(
   @volatile private var lastBroken = Option.empty[Event]
   @volatile private var isOfTeams  = false
 
-  /** The last answer that came after its time-out. */
+  /** The last answer that arrived after its time-out. */
   @volatile private var lastLate = Option.empty[Event]
   private val clocks             = AtomicReference(TimeAxis.begun)
   private val places             = AtomicReference(Map.empty[String, Stamped[Kinematics]])
