@@ -56,8 +56,8 @@ object WholeFlights:
     */
   val Never = 1e6
 
-  /** @return the weighted sum of a flight's measures; None if one has no value. A time that is never reached counts
-    *   as the duration, as in [[ScenarioTerm.value]].
+  /** @return the weighted sum of a flight's measures; None if one has no value. A time that is never reached
+    *   counts as the duration, as in [[ScenarioTerm.value]].
     */
   def sum(terms: Vector[(Double, Measure)], flown: Tracks, durationS: Double): Option[Double] =
     val values = terms.flatMap: (weight, measure) =>
