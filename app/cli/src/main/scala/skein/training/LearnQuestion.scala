@@ -22,9 +22,9 @@ import upickle.default.ReadWriter
   * @param steps total number of steps of all environments
   * @param environments number of environments that run concurrently
   * @param lessonS duration of a learning episode, s
-  * @param startLeastM least initial distance of the evader, m
-  * @param turnRateRadPerS greatest turn rate of the policy
-  * @param climbMps greatest vertical speed of the policy; 0: it keeps its altitude
+  * @param startLeastM minimum initial distance of the evader, m
+  * @param turnRateRadPerS maximum turn rate of the policy
+  * @param climbMps maximum vertical speed of the policy; 0: it keeps its altitude
   * @param episodes number of episodes of an evaluation during learning
   * @param fresh number of episodes of the final evaluation
   */
@@ -211,7 +211,7 @@ final case class LearnSetup(
   def policy(weights: Vector[Double]): PolicyFile =
     PolicyFile(role, family, weights ++ bounds)
 
-  /** The greatest turn rate and vertical speed, as the last parameters of [[family]]. */
+  /** The maximum turn rate and vertical speed, as the last parameters of [[family]]. */
   def bounds: Vector[Double] =
     Vector(question.turnRateRadPerS, 0.0) ++ Option.when(space.climbs)(question.climbMps)
 

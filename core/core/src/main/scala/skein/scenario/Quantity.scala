@@ -51,7 +51,7 @@ private[scenario] final case class Shortfall(quantity: Quantity, bound: Double) 
 enum Reduction:
   case Mean, Rms, Sd, Least, Most
 
-  /** First time of the least or the greatest value, s. */
+  /** First time of the minimum or the maximum value, s. */
   case LeastAt, MostAt
 
   /** Total time in which the value was above 0, s. */

@@ -147,7 +147,7 @@ final class EnvironmentSimulator private (
           velocities = velocities.updated(index, Vector3.Zero)
 
 object EnvironmentSimulator:
-  /** Greatest vertical speed towards a commanded altitude, m/s. */
+  /** Maximum vertical speed towards a commanded altitude, m/s. */
   private val MostClimbMps = 3.0
 
   private type Answer = Either[VehicleError, Boolean]

@@ -89,7 +89,7 @@ private[flight] final class MavlinkFleet(
     answer.map(_.fold(error => throw StartPositioning.NotReady(error.message), identity))
 
 private object MavlinkFleet:
-  /** Least height of the geofence above the highest start, and its distance from the farthest, m. */
+  /** Minimum height of the geofence above the highest start, and its distance from the farthest, m. */
   private val AboveM = 100.0
   private val AsideM = 500.0
 

@@ -222,7 +222,7 @@ object FlightPlan:
   def fileName(id: String): String = id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb"
 
 object FlySettings:
-  /** Greatest altitude, m: forward simulation and the built-in simulator use the air density at the ground.
+  /** Maximum altitude, m: forward simulation and the built-in simulator use the air density at the ground.
     */
   val MostAltitudeM = 1000.0
 

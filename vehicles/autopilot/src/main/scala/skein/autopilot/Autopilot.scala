@@ -192,7 +192,7 @@ final case class Autopilot(
     news = if isArmed then Vector(text(Severity.Info, why)) else Vector.empty
   )
 
-  /** Degrees of a COMMAND_INT, whose greatest number stands for none. */
+  /** Degrees of a COMMAND_INT, whose largest integer stands for none. */
   private def degrees(number: Int) = if number == Int.MaxValue then Double.NaN else number * 1e-7
 
   private def reposition(order: Order, motion: VehicleMotion): Either[Refusal, Heard] =

@@ -38,7 +38,7 @@ object Mission:
     val OutOfOrder       = 13
     val Cancelled        = 15
 
-  /** Greatest distance of an item from home, m: a mission beyond it belongs to another home. Far more than
+  /** Maximum distance of an item from home, m: a mission beyond it belongs to another home. Far more than
     * any mission needs, and less than the distance to another town.
     */
   val FarthestM = 20_000.0

@@ -117,7 +117,7 @@ class SensorMessagesSuite extends munit.FunSuite:
     assertEquals(local(""), Vector(("spin", true)))
     assertEquals(local("\"mine\": { \"SensorType\": 6, \"Enabled\": true }"), Vector(("mine", false)))
 
-  test("names become parts of topics"):
+  test("names are made valid in topics: other characters become _, which also precedes a leading digit"):
     assertEquals(
       Seq("front", "0", "a b-ü").map(SensorMessages.token),
       Seq("front", "_0", "a_b__")
