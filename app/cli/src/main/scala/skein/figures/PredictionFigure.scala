@@ -73,7 +73,7 @@ object PredictionFigure:
     val title = panel.title(s"${group.name}, ${FlightTheme.link(group.link)}")
     Drawing(366, 262, (title +: panel.axes) ++ lines)
 
-  /** Least number of points of a curve; fewer are drawn as discs. */
+  /** Minimum number of points of a curve; fewer are drawn as discs. */
   private val FewestOfCurve = 3
 
   private def marks(
