@@ -156,6 +156,21 @@ def test_the_schedule_is_what_arrivals_one_by_one_give():
         assert np.array_equal(np.maximum(row - schedule.acts[at], -1), acts[row]), row
 
 
+@pytest.mark.parametrize("rows", [0, 3, 700])
+@pytest.mark.parametrize("every", [1, 3])
+def test_constant_delays_are_those_of_a_trace_of_them(rows, every):
+    constant, trace = (
+        Schedule(2, STEP_S, delays(back), delays(to), every=every)
+        for back, to in ((rows * STEP_S, 2 * STEP_S), ([rows * STEP_S], [2 * STEP_S]))
+    )
+    for one in (constant, trace):
+        one.seed(np.random.SeedSequence(0).spawn(2))
+    for row in range(0, 5 * constant.rows, 7):
+        at = constant.row(row)
+        assert trace.row(row) == at
+        assert np.array_equal(constant.seen[at], trace.seen[at]) and np.array_equal(constant.acts[at], trace.acts[at]), row
+
+
 @pytest.mark.parametrize("link", LINKS)
 @pytest.mark.parametrize("settings", [{}, {"dropout": 0.3}, {"moves_in_flight": 2}, {"shares": True}, {"every": 3}])
 def test_no_schedule_is_older_than_it_says(link, settings):
