@@ -222,8 +222,7 @@ class Delay:
             self._maximum = self._xp.maximum
             self._room = self._rows_at_once(observations)
             self._has_room = self.spare > 0 and self._xp is np and self._predict is None
-            spare = self.spare if self._has_room else 0
-            self._observations = History(observations, self._kept, self._room, self._count, spare)
+            self._observations = History(observations, self._kept, self._room, self._count, self._has_room)
             self._ages = on(self._like, self._table())
             self._columns = on(self._like, np.arange(self._count))
             links, self._of_links = self._schedule.count, None
@@ -299,24 +298,28 @@ class Delay:
             arrived = (arrived + self._of_links).reshape(2, -1)[:, : self._count]
         self._newest = self._maximum(arrived, self._began)
         newest = self._newest[0]
+        # The table ends with ages of 0: those of this row.
+        ages = self._ages[(self._room - 1 - at) * self._count :]
+        if self._has_room:
+            columns = self._observations.rows.T
+            width = len(columns)
+            taken = np.empty((width + self.spare, self._count), columns.dtype)
+            columns.take(newest, 1, taken[:width], "clip")  # else ``out`` is copied
+            if self._is_zero:
+                taken[:width, arrived[0] < self._began] = 0
+            if ages.dtype != taken.dtype:
+                self._ages = self._table().astype(taken.dtype)
+                ages = self._ages[-len(ages) :]
+            ages.take(newest, 0, taken[width], "clip")
+            if self._pending:
+                taken[width + 1 :] = self._told.reshape(-1, self._count)
+            return Seen(taken.T, taken[width], None)
         observation = self._observations.take(newest)
         if self._is_zero:
             has = arrived[0] >= self._began
             observation = each(lambda one: self._xp.where(beside(has, one), one, self._xp.zeros_like(one)), observation)
         if self._predict is not None:
             observation = self._predicted(observation, (self._row(at) - newest) // self._count, at)
-        # The table ends with ages of 0: those of this row.
-        ages = self._ages[(self._room - 1 - at) * self._count :]
-        if self._has_room:
-            if ages.dtype != observation.dtype:
-                self._ages = self._table().astype(observation.dtype)
-                ages = self._ages[-len(ages) :]
-            columns = observation.T
-            age_s = columns[-self.spare]
-            ages.take(newest, 0, age_s, "clip")
-            if self._pending:
-                columns[1 - self.spare :] = self._told.reshape(-1, self._count)
-            return Seen(observation, age_s, None)
         age_s = ages.take(newest) if self._xp is np else ages[newest]
         return Seen(observation, age_s, each(by_environment, self._told) if self._pending else None)
 
@@ -407,14 +410,15 @@ class Delay:
         self._end, block = self._first + rows, slice(at, at + rows)
         numbers = np.arange(rows, dtype=np.int32)[:, None]
         # An action is stored a row after its decision, since the row in which an episode begins holds the idle one.
-        first = np.empty((rows, 2, schedule.count), np.intp)
-        first[:, 0] = numbers + self._kept - schedule.seen[block]
-        first[:, 1] = numbers - numbers % self._every + (self._kept + 1) - schedule.acts[block] * np.int32(self._every)
+        first = np.empty((rows, 2, schedule.count), np.int32)
+        np.subtract(numbers + self._kept, schedule.seen[block], out=first[:, 0])
+        np.multiply(schedule.acts[block], np.int32(-self._every), out=first[:, 1])
+        first[:, 1] += numbers - numbers % self._every + (self._kept + 1)
         first *= self._count
         if self._of_links is None:
-            first += np.arange(self._count)
+            first += np.arange(self._count, dtype=np.int32)
         else:
             first = first[:, :, None]
-        self._arrived = list(on(self._like, first))
+        self._arrived = list(on(self._like, first.astype(np.intp)))
         self._most = schedule.seen[block].max(1)
         self._weights = on(self._like, schedule.weights[block]) if self._is_shared else None
