@@ -117,6 +117,9 @@ def test_files_hold_round_trips(tmp_path):
         ({"link": "vpn", "observation_delay": 0.1, "action_delay": 0.1}, "link: expected none beside"),
         ({"action_delay": -0.1}, r"action_delay: expected delays in s from 0 .*, got -0.1"),
         ({"action_delay": [0.1, math.nan]}, "action_delay: expected delays in s"),
+        ({"action_delay": lambda: 0.1}, "action_delay: expected a profile, a number or array of s, or a Trace, got <function"),
+        ({"link": "correlated:vpn,250ms"}, "link: expected a time such as 200ms, of at most an hour, got 'vpn'"),
+        ({"action_delay": np.ones((10, 3))}, r"expected delays of shape \(times,\) or \(times, environments = 4\), got \(10, 3\)"),
         ({"observation_delay": Trace(np.ones(3), 0.0)}, "observation_delay: expected more than 0 s from one"),
         ({"observation_delay": 60.0, "action_delay": 60.0}, "expected delays of at most 1000 steps of 0.05 s, got up to 60 s"),
         ({"step_s": 0}, "step_s: expected more than 0 s, got 0"),
@@ -133,9 +136,11 @@ def test_wrong_settings_are_told(given, told):
         Delay(4, **{"step_s": STEP_S, **given})
 
 
-def test_a_step_that_is_far_longer_than_all_delays_is_doubted_and_a_step_before_reset_refused():
+def test_times_that_seem_to_be_in_ms_are_doubted_and_a_step_before_reset_refused():
     with pytest.warns(UserWarning, match="step_s is 20 s, and delays are of at most 0.103 s: is it in s?"):
         Delay(4, 20, link="vpn")
+    with pytest.warns(UserWarning, match="delays are of up to 40 s: are they in s?"):
+        Delay(4, STEP_S, observation_delay=40)
     with pytest.raises(RuntimeError, match="expected reset, .* before the first step"):
         DelayEnv(Counter(10), STEP_S, link="vpn").step(0)
 

@@ -170,6 +170,8 @@ class Delay:
             links, step_s, back, to, compute_s=compute_s, dropout=dropout, moves_in_flight=moves_in_flight, every=every,
             shares=self._is_shared,
         )  # fmt: skip
+        if longest_s > 10:
+            warnings.warn(f"delays are of up to {longest_s:g} s: are they in s?", stacklevel=3)
         self.longest_age_s = self._schedule.oldest_seen * step_s
         self._ahead = self._schedule.action_delay_rows
         oldest = max(self._schedule.oldest_seen, self._schedule.oldest_acting * every)

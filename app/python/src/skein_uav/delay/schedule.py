@@ -255,7 +255,9 @@ class _Direction:
         self._delays, self._count, self._step_s, self._lines, self._link = delays, count, step_s, lines, link
         self.draws = 0 if delays.is_constant or delays.trace is not None or delays.correlation_s else lines
         if delays.trace is not None and delays.trace.ndim == 2 and delays.trace.shape[1] != count:
-            raise ValueError(f"expected delays of shape (times,) or (times, {count}), got {delays.trace.shape}")
+            raise ValueError(
+                f"expected delays of shape (times,) or (times, environments = {count}), got {delays.trace.shape}"
+            )
 
     def seed(self, links: list[np.random.Generator]) -> None:
         self._last: dict[str, NDArray[np.float32]] = {}
