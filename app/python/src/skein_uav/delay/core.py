@@ -261,7 +261,8 @@ class Delay:
                 self._told = each(followed, self._told, newest)
         if self._is_shared:
             return self._mean(at)
-        return self._actions.take(self._newest[1])
+        rows = self._actions.rows
+        return rows.take(self._newest[1], 0) if type(rows) is np.ndarray else self._actions.take(self._newest[1])
 
     def seen(self, observations: Tree, began: Any = None) -> Seen:
         """Takes the observations after a step; returns the policy's input.
@@ -290,7 +291,10 @@ class Delay:
             which, places = flags, None
             self._began = self._xp.where(flags, self._row(at), self._began)
         if self._actions is not None:
-            self._actions.put_where(which, at, self._idles, places)
+            if places is not None and type(self._idles) is np.ndarray:
+                self._actions.rows[places] = self._idles[which]
+            else:
+                self._actions.put_where(which, at, self._idles)
             if self._pending:
                 self._told = each(lambda told, idle: replaced(told, flags, idle), self._told, self._idles_told)
 

@@ -29,7 +29,7 @@ class History:
     Attributes
     ----------
     rows : Tree
-        The entries of all places.
+        The entries of all places; those of NumPy may be changed.
     """
 
     def __init__(self, value: Tree, kept: int, room: int, count: int, by_columns: bool = False) -> None:
@@ -49,19 +49,10 @@ class History:
         else:
             self._hold(each(lambda rows, one: put(_wide(rows, one), slot, one), self.rows, value))
 
-    def put_where(self, which: Any, row: int, value: Tree, places: Any = None) -> None:
-        """Stores the value in a row for some environments: given by indices with NumPy, else by flags.
-
-        Parameters
-        ----------
-        places : ndarray, optional
-            The places of these environments in the row, if known.
-        """
-        if self._dtype is not None:
-            self.rows[which + (row + self._kept) * self._count if places is None else places] = value[which]
-        else:
-            slot = self._slot(row, row + 1)
-            self._hold(each(lambda rows, one: put(rows, slot, changed(rows[slot], which, one)), self.rows, value))
+    def put_where(self, which: Any, row: int, value: Tree) -> None:
+        """Stores the value in a row for some environments: given by indices with NumPy, else by flags."""
+        slot = self._slot(row, row + 1)
+        self._hold(each(lambda rows, one: put(rows, slot, changed(rows[slot], which, one)), self.rows, value))
 
     def take(self, places: Any) -> Tree:
         return self.rows.take(places, 0) if self._dtype is not None else each(lambda one: _taken(one, places), self.rows)
