@@ -489,6 +489,19 @@ def test_a_vector_is_told_what_lists_of_messages_tell(mode, case):
             told, _ = env.reset(options={"reset_mask": ended})
 
 
+def test_ends_may_be_numbers():
+    class Numbers(gym.vector.VectorWrapper):
+        def step(self, actions):
+            seen, rewards, terminated, truncated, infos = self.env.step(actions)
+            return seen, rewards, terminated.astype(np.uint8), truncated.astype(np.uint8), infos
+
+    def made():
+        return SyncVectorEnv([lambda one=one: Counter(one) for one in (3, 5)])
+
+    envs = [DelayVectorEnv(one, STEP_S, link="vpn", pending=2) for one in (made(), Numbers(made()))]
+    assert same(*(flown(env, np.ones((20, 2, 1)))[1:] for env in envs))
+
+
 def test_what_was_told_stays_as_it_was():
     env = DelayVectorEnv(SyncVectorEnv([Counter] * 3), STEP_S, link="vpn", pending=2)
     told = [env.reset(seed=1)[0]]

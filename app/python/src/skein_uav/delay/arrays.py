@@ -77,7 +77,7 @@ def replaced(rows: Any, flags: Any, value: Any) -> Any:
     """Rows as of `repeated`, with other ones' values in the environments whose flags are set; those of NumPy in place."""
     if type(rows) is not np.ndarray:
         return changed(rows, flags, value)
-    np.copyto(rows, value, where=flags)
+    np.copyto(rows, value, where=flags.astype(np.bool_, copy=False))
     return rows
 
 
