@@ -117,6 +117,9 @@ def test_files_hold_round_trips(tmp_path):
         ({"link": "vpn", "observation_delay": 0.1, "action_delay": 0.1}, "link: expected none beside"),
         ({"action_delay": -0.1}, r"action_delay: expected delays in s from 0 .*, got -0.1"),
         ({"action_delay": [0.1, math.nan]}, "action_delay: expected delays in s"),
+        ({"action_delay": lambda: 0.1}, "action_delay: expected a profile, a number or array of s, or a Trace, got <function"),
+        ({"link": "correlated:vpn,250ms"}, "link: expected a time such as 200ms, of at most an hour, got 'vpn'"),
+        ({"action_delay": np.ones((10, 3))}, r"expected delays of shape \(times,\) or \(times, environments = 4\), got \(10, 3\)"),
         ({"observation_delay": Trace(np.ones(3), 0.0)}, "observation_delay: expected more than 0 s from one"),
         ({"observation_delay": 60.0, "action_delay": 60.0}, "expected delays of at most 1000 steps of 0.05 s, got up to 60 s"),
         ({"step_s": 0}, "step_s: expected more than 0 s, got 0"),
@@ -133,9 +136,11 @@ def test_wrong_settings_are_told(given, told):
         Delay(4, **{"step_s": STEP_S, **given})
 
 
-def test_a_step_that_is_far_longer_than_all_delays_is_doubted_and_a_step_before_reset_refused():
+def test_times_that_seem_to_be_in_ms_are_doubted_and_a_step_before_reset_refused():
     with pytest.warns(UserWarning, match="step_s is 20 s, and delays are of at most 0.103 s: is it in s?"):
         Delay(4, 20, link="vpn")
+    with pytest.warns(UserWarning, match="delays are of up to 40 s: are they in s?"):
+        Delay(4, STEP_S, observation_delay=40)
     with pytest.raises(RuntimeError, match="expected reset, .* before the first step"):
         DelayEnv(Counter(10), STEP_S, link="vpn").step(0)
 
@@ -154,6 +159,21 @@ def test_the_schedule_is_what_arrivals_one_by_one_give():
         at = schedule.row(row)
         assert np.array_equal(np.maximum(row - schedule.seen[at], -1), seen[row]), row
         assert np.array_equal(np.maximum(row - schedule.acts[at], -1), acts[row]), row
+
+
+@pytest.mark.parametrize("rows", [0, 3, 700])
+@pytest.mark.parametrize("every", [1, 3])
+def test_constant_delays_are_those_of_a_trace_of_them(rows, every):
+    constant, trace = (
+        Schedule(2, STEP_S, delays(back), delays(to), every=every)
+        for back, to in ((rows * STEP_S, 2 * STEP_S), ([rows * STEP_S], [2 * STEP_S]))
+    )
+    for one in (constant, trace):
+        one.seed(np.random.SeedSequence(0).spawn(2))
+    for row in range(0, 5 * constant.rows, 7):
+        at = constant.row(row)
+        assert trace.row(row) == at
+        assert np.array_equal(constant.seen[at], trace.seen[at]) and np.array_equal(constant.acts[at], trace.acts[at]), row
 
 
 @pytest.mark.parametrize("link", LINKS)
@@ -467,6 +487,19 @@ def test_a_vector_is_told_what_lists_of_messages_tell(mode, case):
         elif ended.any():
             begin(ended, bare.reset(options={"reset_mask": ended})[0])
             told, _ = env.reset(options={"reset_mask": ended})
+
+
+def test_ends_may_be_numbers():
+    class Numbers(gym.vector.VectorWrapper):
+        def step(self, actions):
+            seen, rewards, terminated, truncated, infos = self.env.step(actions)
+            return seen, rewards, terminated.astype(np.uint8), truncated.astype(np.uint8), infos
+
+    def made():
+        return SyncVectorEnv([lambda one=one: Counter(one) for one in (3, 5)])
+
+    envs = [DelayVectorEnv(one, STEP_S, link="vpn", pending=2) for one in (made(), Numbers(made()))]
+    assert same(*(flown(env, np.ones((20, 2, 1)))[1:] for env in envs))
 
 
 def test_what_was_told_stays_as_it_was():

@@ -57,21 +57,33 @@ def changed(array: Any, mask: Any, value: Any) -> Any:
     return array
 
 
-def followed(rows: Any, newest: Any) -> Any:
-    """Rows of each environment, shape (environments, rows, …), without the first and with a new last one."""
-    if type(rows) is not np.ndarray:
-        return namespace(rows).concatenate([rows[:, 1:], newest[:, None]], 1)
-    later = np.empty_like(rows)
-    later[:, :-1] = rows[:, 1:]
-    later[:, -1] = newest
-    return later
-
-
 def repeated(one: Any, number: int) -> Any:
-    """Equal rows for each environment; with NumPy, environments are contiguous, so that one loop copies a row."""
+    """Equal rows for each environment, shape (environments, rows, …), but (rows, …, environments) with NumPy."""
     if type(one) is not np.ndarray:
         return namespace(one).stack([one] * number, 1)
-    return np.moveaxis(np.stack([np.ascontiguousarray(one.T)] * number).T, -1, 1)
+    return np.stack([np.moveaxis(one, 0, -1)] * number)
+
+
+def followed(rows: Any, newest: Any) -> Any:
+    """Rows as of `repeated`, moved on by a new last one; those of NumPy in place."""
+    if type(rows) is not np.ndarray:
+        return namespace(rows).concatenate([rows[:, 1:], newest[:, None]], 1)
+    rows[:-1] = rows[1:]
+    rows[-1] = newest.T if newest.ndim <= 2 else np.moveaxis(newest, 0, -1)
+    return rows
+
+
+def replaced(rows: Any, flags: Any, value: Any) -> Any:
+    """Rows as of `repeated`, with other ones' values in the environments whose flags are set; those of NumPy in place."""
+    if type(rows) is not np.ndarray:
+        return changed(rows, flags, value)
+    np.copyto(rows, value, where=flags.astype(np.bool_, copy=False))
+    return rows
+
+
+def by_environment(rows: Any) -> Any:
+    """Rows as of `repeated`, shape (environments, rows, …)."""
+    return np.moveaxis(rows, -1, 0).copy() if type(rows) is np.ndarray else rows
 
 
 def beside(flags: Any, array: Any) -> Any:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Tree, beside, cast, changed, copied, each, followed, leaf, namespace, on, repeated
+from .arrays import Tree, beside, by_environment, cast, copied, each, followed, leaf, namespace, on, repeated, replaced
 from .history import History
 from .profiles import Trace, delays
 from .schedule import MOST_ROWS, Schedule, spawned
@@ -103,8 +103,8 @@ class Delay:
     longest_age_s : float
         Greatest age of an observation, s.
     spare : int
-        Number of columns after those of an observation, if observations are NumPy matrices and not predicted: one for
-        the age, and others that are left free. To be set before the first observation.
+        If observations are NumPy matrices and not predicted, the number of columns that follow them in `Seen`: the age and
+        the pending decisions, or 0. To be set before the first observation.
 
     Raises
     ------
@@ -170,6 +170,8 @@ class Delay:
             links, step_s, back, to, compute_s=compute_s, dropout=dropout, moves_in_flight=moves_in_flight, every=every,
             shares=self._is_shared,
         )  # fmt: skip
+        if longest_s > 10:
+            warnings.warn(f"delays are of up to {longest_s:g} s: are they in s?", stacklevel=3)
         self.longest_age_s = self._schedule.oldest_seen * step_s
         self._ahead = self._schedule.action_delay_rows
         oldest = max(self._schedule.oldest_seen, self._schedule.oldest_acting * every)
@@ -222,12 +224,12 @@ class Delay:
             self._maximum = self._xp.maximum
             self._room = self._rows_at_once(observations)
             self._has_room = self.spare > 0 and self._xp is np and self._predict is None
-            spare = self.spare if self._has_room else 0
-            self._observations = History(observations, self._kept, self._room, self._count, spare)
+            self._observations = History(observations, self._kept, self._room, self._count, self._has_room)
             self._ages = on(self._like, self._table())
             self._columns = on(self._like, np.arange(self._count))
-            links = self._schedule.count
-            self._of_links = on(self._like, np.arange(-(-self._count // links) * links).reshape(-1, links))
+            links, self._of_links = self._schedule.count, None
+            if links < self._count:
+                self._of_links = on(self._like, np.arange(-(-self._count // links) * links).reshape(-1, links))
             self._began = self._row(0)
         if self._actions is None and actions is not None:
             self._allocate(actions)
@@ -247,7 +249,7 @@ class Delay:
         """
         if not self._is_begun:
             raise RuntimeError("expected reset, or begin of a Delay, before the first step")
-        at = self._in_block()
+        at = self.row - self._first
         if actions is not None:
             if type(actions) is not np.ndarray or self._xp is not np:
                 actions = each(lambda one: on(self._like, one), actions)
@@ -259,7 +261,8 @@ class Delay:
                 self._told = each(followed, self._told, newest)
         if self._is_shared:
             return self._mean(at)
-        return self._actions.take(self._newest[1])
+        rows = self._actions.rows
+        return rows.take(self._newest[1], 0) if type(rows) is np.ndarray else self._actions.take(self._newest[1])
 
     def seen(self, observations: Tree, began: Any = None) -> Seen:
         """Takes the observations after a step; returns the policy's input.
@@ -270,50 +273,61 @@ class Delay:
             The environments in which this step began a new episode, of which the observation is the first.
         """
         self.row += 1
-        at = self._in_block()
+        at = self.row - self._first if self.row < self._end else self._in_block()
         if began is not None:
             self._void(began if type(began) is np.ndarray and self._xp is np else on(self._like, began), at)
         self._observations.put(at, observations)
         return self._look(at)
 
-    def _void(self, mask: Any, at: int) -> None:
+    def _void(self, flags: Any, at: int) -> None:
         """Begins episodes: earlier decisions are void, and the idle action replaces the last one."""
-        if type(mask) is np.ndarray:
-            which = mask.nonzero()[0]
+        if type(flags) is np.ndarray:
+            which = flags.nonzero()[0]
             if not which.size:
                 return
             places = which + (at + self._kept) * self._count
             self._began[which] = places
         else:
-            which, places = mask, None
-            self._began = self._xp.where(mask, self._row(at), self._began)
+            which, places = flags, None
+            self._began = self._xp.where(flags, self._row(at), self._began)
         if self._actions is not None:
-            self._actions.put_where(which, at, self._idles, places)
+            if places is not None and type(self._idles) is np.ndarray:
+                self._actions.rows[places] = self._idles[which]
+            else:
+                self._actions.put_where(which, at, self._idles)
             if self._pending:
-                self._told = each(lambda told, idle: changed(told, which, idle), self._told, self._idle_told)
+                self._told = each(lambda told, idle: replaced(told, flags, idle), self._told, self._idles_told)
 
     def _look(self, at: int) -> Seen:
-        # Environments beyond the links share them in turns.
-        arrived = (self._arrived[at] + self._of_links).reshape(2, -1)[:, : self._count]
+        arrived = self._arrived[at]
+        if self._of_links is not None:  # environments beyond the links share them in turns
+            arrived = (arrived + self._of_links).reshape(2, -1)[:, : self._count]
         self._newest = self._maximum(arrived, self._began)
         newest = self._newest[0]
+        # The table ends with ages of 0: those of this row.
+        ages = self._ages[(self._room - 1 - at) * self._count :]
+        if self._has_room:
+            columns = self._observations.rows.T
+            width = len(columns)
+            taken = np.empty((width + self.spare, self._count), columns.dtype)
+            columns.take(newest, 1, taken[:width], "clip")  # else ``out`` is copied
+            if self._is_zero:
+                taken[:width, arrived[0] < self._began] = 0
+            if ages.dtype != taken.dtype:
+                self._ages = self._table().astype(taken.dtype)
+                ages = self._ages[-len(ages) :]
+            ages.take(newest, 0, taken[width], "clip")
+            if self._pending:
+                taken[width + 1 :] = self._told.reshape(-1, self._count)
+            return Seen(taken.T, taken[width], None)
         observation = self._observations.take(newest)
         if self._is_zero:
             has = arrived[0] >= self._began
             observation = each(lambda one: self._xp.where(beside(has, one), one, self._xp.zeros_like(one)), observation)
         if self._predict is not None:
             observation = self._predicted(observation, (self._row(at) - newest) // self._count, at)
-        # The table ends with ages of 0: those of this row.
-        ages = self._ages[(self._room - 1 - at) * self._count :]
-        if self._has_room:
-            if ages.dtype != observation.dtype:
-                self._ages = self._table().astype(observation.dtype)
-                ages = self._ages[-len(ages) :]
-            age_s = observation[:, -self.spare]
-            ages.take(newest, 0, age_s, "clip")
-            return Seen(observation, age_s, self._told)
         age_s = ages.take(newest) if self._xp is np else ages[newest]
-        return Seen(observation, age_s, each(copied, self._told) if self._pending else None)
+        return Seen(observation, age_s, each(by_environment, self._told) if self._pending else None)
 
     def _table(self) -> Any:
         """Ages by history index, at the last row."""
@@ -365,9 +379,9 @@ class Delay:
         self._idles = each(filled, actions, idles)
         self._actions = History(self._idles, self._kept, self._room + 1, self._count)
         if self._pending:
-            idle = self._idles if self._encode is None else self._encode(self._idles)
-            self._idle_told = each(lambda one: repeated(one, self._pending), idle)
-            self._told = self._idle_told
+            idles = self._idles if self._encode is None else self._encode(self._idles)
+            self._idles_told = each(lambda one: repeated(one, self._pending), idles)
+            self._told = each(copied, self._idles_told)
 
     def _rows_at_once(self, observations: Tree) -> int:
         """How many rows histories take before old ones are forgotten."""
@@ -400,13 +414,17 @@ class Delay:
         schedule, at = self._schedule, self._schedule.row(self._first)
         rows = min(self._room, schedule.rows - at)
         self._end, block = self._first + rows, slice(at, at + rows)
-        numbers = np.arange(rows)[:, None]
+        numbers = np.arange(rows, dtype=np.int32)[:, None]
         # An action is stored a row after its decision, since the row in which an episode begins holds the idle one.
-        first = np.empty((rows, 2, schedule.count), np.intp)
+        first = np.empty((rows, 2, schedule.count), np.int32)
         np.subtract(numbers + self._kept, schedule.seen[block], out=first[:, 0])
-        np.multiply(schedule.acts[block], -self._every, out=first[:, 1])
+        np.multiply(schedule.acts[block], np.int32(-self._every), out=first[:, 1])
         first[:, 1] += numbers - numbers % self._every + (self._kept + 1)
         first *= self._count
-        self._arrived = list(on(self._like, first[:, :, None]))
+        if self._of_links is None:
+            first += np.arange(self._count, dtype=np.int32)
+        else:
+            first = first[:, :, None]
+        self._arrived = list(on(self._like, first.astype(np.intp)))
         self._most = schedule.seen[block].max(1)
         self._weights = on(self._like, schedule.weights[block]) if self._is_shared else None

@@ -23,63 +23,51 @@ class History:
         Number of rows that `forget` keeps, and of rows that fit after them.
     count : int
         Number of environments.
-    spare : int
-        Number of columns after those of the value, which then is a NumPy matrix: `take` returns them with arbitrary
-        values. Columns are then contiguous, so that one loop copies each.
+    by_columns : bool
+        Whether each column is contiguous, so that one loop copies it; the value then is a NumPy matrix.
+
+    Attributes
+    ----------
+    rows : Tree
+        The entries of all places; those of NumPy may be changed.
     """
 
-    def __init__(self, value: Tree, kept: int, room: int, count: int, spare: int = 0) -> None:
+    def __init__(self, value: Tree, kept: int, room: int, count: int, by_columns: bool = False) -> None:
         self._xp, self._kept, self._count, self._length = namespace(leaf(value)), kept, count, kept + room
-        self._spare = spare
+        self._by_columns = by_columns
         self._hold(each(lambda one: _repeated(self._xp, one, kept + room), value))
 
     def _hold(self, rows: Tree) -> None:
-        self._rows = np.asfortranarray(rows) if self._spare else rows
-        self._columns = self._rows.T if self._spare else None
+        self.rows = np.asfortranarray(rows) if self._by_columns else rows
         self._dtype = rows.dtype if type(rows) is np.ndarray else None
 
     def put(self, row: int, value: Tree) -> None:
         begin = (row + self._kept) * self._count
         slot = slice(begin, begin + self._count)
         if self._dtype is not None and (value.dtype is self._dtype or value.dtype == self._dtype):
-            self._rows[slot] = value
+            self.rows[slot] = value
         else:
-            self._hold(each(lambda rows, one: put(_wide(rows, one), slot, one), self._rows, value))
+            self._hold(each(lambda rows, one: put(_wide(rows, one), slot, one), self.rows, value))
 
-    def put_where(self, which: Any, row: int, value: Tree, places: Any = None) -> None:
-        """Stores the value in a row for some environments: given by indices with NumPy, else by flags.
-
-        Parameters
-        ----------
-        places : ndarray, optional
-            The places of these environments in the row, if known.
-        """
+    def put_where(self, which: Any, row: int, value: Tree) -> None:
+        """Stores the value in a row for some environments: given by indices with NumPy, else by flags."""
         slot = self._slot(row, row + 1)
-        if self._dtype is not None:
-            self._rows[which + slot.start if places is None else places] = value[which]
-        else:
-            self._hold(each(lambda rows, one: put(rows, slot, changed(rows[slot], which, one)), self._rows, value))
+        self._hold(each(lambda rows, one: put(rows, slot, changed(rows[slot], which, one)), self.rows, value))
 
     def take(self, places: Any) -> Tree:
-        rows, columns = self._rows, self._columns
-        if columns is not None:
-            width = len(columns)
-            taken = np.empty((width + self._spare, self._count), self._dtype)
-            columns.take(places, 1, taken[:width], "clip")  # else ``out`` is copied
-            return taken.T
-        return rows.take(places, 0) if self._dtype is not None else each(lambda one: _taken(one, places), rows)
+        return self.rows.take(places, 0) if self._dtype is not None else each(lambda one: _taken(one, places), self.rows)
 
     def row(self, row: int) -> Tree:
         """A whole row, of any episode; must not be changed."""
         slot = self._slot(row, row + 1)
-        return each(lambda rows: rows[slot], self._rows)
+        return each(lambda rows: rows[slot], self.rows)
 
     def forget(self, number: int) -> None:
         """Makes room: row ``number`` becomes row 0."""
         if number:
             old = self._slot(number - self._kept, min(number + 1, self._length - self._kept))
             new = slice(0, old.stop - old.start)
-            self._hold(each(lambda rows: put(rows, new, copied(rows[old])), self._rows))  # they overlap
+            self._hold(each(lambda rows: put(rows, new, copied(rows[old])), self.rows))  # they overlap
 
     def _slot(self, first: int, end: int) -> slice:
         return slice((first + self._kept) * self._count, (end + self._kept) * self._count)

@@ -112,8 +112,11 @@ def delays(given: str | float | ArrayLike | Trace | Delays, what: str = "delays"
         return given
     if isinstance(given, str):
         return _parsed(given, what)
-    trace = given if isinstance(given, Trace) else Trace(np.asarray(given, dtype=np.float64))
-    values = np.asarray(trace.delays_s, dtype=np.float64)
+    trace = given if isinstance(given, Trace) else Trace(given)
+    try:
+        values = np.asarray(trace.delays_s, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{what}: expected a profile, a number or array of s, or a Trace, got {_short(given)}") from None
     if values.ndim > 2 or values.size == 0 or not np.all((values >= 0) & (values <= LONGEST_S)):
         raise ValueError(
             f"{what}: expected delays in s from 0 to {LONGEST_S:g}, as one number or of shape (times,) or (times, "
@@ -157,10 +160,10 @@ def _parsed(text: str, what: str) -> Delays:
         over, _, latency = rest.partition(",")
         if latency.startswith("correlated:"):
             raise ValueError(f"{what}: expected one time constant, got {text!r}")
-        one = _parsed(latency, what)
         seconds = _seconds(over, what)
         if seconds == 0:
             raise ValueError(f"{what}: expected a time constant of more than 0, got {over!r}")
+        one = _parsed(latency, what)
         return Delays(one.busy, one.quiet, one.busy_share, one.mixing_s, seconds)
     if kind == "constant":
         return _steady(np.full(SIZE, _seconds(rest, what) / 2))

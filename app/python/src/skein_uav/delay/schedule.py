@@ -98,6 +98,7 @@ class Schedule:
         self._back = _Direction(observation, count, step_s, lines=1 if moves_in_flight is None else 2)
         self._to = _Direction(action, count, step_s, lines=1, link=self._back if action is observation else None)
         self._is_exact = shares or moves_in_flight is not None
+        self._is_constant = action.is_constant and observation.is_constant and not (dropout or self._is_exact)
         self._shares = shares
 
     def seed(self, seeds: Sequence[np.random.SeedSequence], line: int = 0) -> None:
@@ -132,6 +133,8 @@ class Schedule:
         return row - self.first
 
     def _make(self) -> None:
+        if self._is_constant and self.first - self.rows >= max(self.oldest_seen, self.oldest_acting * self.every):
+            return  # the last block began after the first messages' arrival, and another one is like it
         decided = slice(None, None, self.every)
         kinds = [one.draws + (self._dropout > 0) for one in (self._back, self._to)]
         drawn = _drawn(self._lines, self.rows, kinds)
@@ -208,13 +211,18 @@ class Schedule:
         oldest = len(self._underway[line])
         all = np.concatenate([self._underway[line], late])
         self._underway[line] = all[len(all) - oldest :]
-        newest = np.full((len(late) * every, self.count), oldest + 1, np.int16)
+        newest = np.empty((len(late) * every, self.count), np.int16)
         least = int(all.min()) // every
+        is_late, beyond = np.empty(late.shape, np.bool_), np.empty_like(late)
         for offset in range(every):
-            rows = newest[offset::every]
-            for lag in range(least, oldest + 1):
-                is_late = all[oldest - lag : oldest - lag + len(late)] > lag * every + offset
-                np.minimum(rows, is_late * np.int16(oldest + 1) + np.int16(lag), out=rows)
+            # How much older than `lag` the newest is, from lag to lag.
+            beyond[...] = 0
+            for lag in range(oldest, least - 1, -1):
+                np.greater(all[oldest - lag : oldest - lag + len(late)], lag * every + offset, out=is_late)
+                beyond += 1
+                beyond *= is_late
+            newest[offset::every] = beyond
+        newest += least
         return newest
 
     def _weights(self, arrives: Floats) -> Floats:
@@ -247,7 +255,9 @@ class _Direction:
         self._delays, self._count, self._step_s, self._lines, self._link = delays, count, step_s, lines, link
         self.draws = 0 if delays.is_constant or delays.trace is not None or delays.correlation_s else lines
         if delays.trace is not None and delays.trace.ndim == 2 and delays.trace.shape[1] != count:
-            raise ValueError(f"expected delays of shape (times,) or (times, {count}), got {delays.trace.shape}")
+            raise ValueError(
+                f"expected delays of shape (times,) or (times, environments = {count}), got {delays.trace.shape}"
+            )
 
     def seed(self, links: list[np.random.Generator]) -> None:
         self._last: dict[str, NDArray[np.float32]] = {}
@@ -301,16 +311,16 @@ class _Direction:
         self, name: str, links: list[np.random.Generator], rows: int, over_s: float
     ) -> NDArray[np.float32]:
         """A number that is drawn anew after exponentially distributed times of this mean, read once per row."""
-        uniform = np.stack([one.random((rows, 2), dtype=np.float32) for one in links], axis=-1)
-        is_new = uniform[:, 0] < -math.expm1(-self._step_s / over_s)
+        uniform = np.stack([one.random((rows, 2), dtype=np.float32) for one in links])
+        is_new = uniform[:, :, 0] < -math.expm1(-self._step_s / over_s)
         last = self._last.get(name)
-        is_new[0] |= last is None
-        at = np.maximum.accumulate(np.where(is_new, np.arange(rows)[:, None], -1), axis=0)
-        held = np.take_along_axis(uniform[:, 1], np.maximum(at, 0), axis=0)
         if last is not None:
-            held = np.where(at < 0, last, held)
+            uniform[:, 0, 1] = np.where(is_new[:, 0], uniform[:, 0, 1], last)
+        is_new[:, 0] = True
+        begins = is_new.ravel().nonzero()[0]
+        held = np.repeat(uniform[:, :, 1].ravel()[begins], np.diff(begins, append=is_new.size)).reshape(-1, rows).T
         self._last[name] = held[-1]
-        return held
+        return np.ascontiguousarray(held)
 
 
 def _exact(delays: Timed) -> Floats:

@@ -37,7 +37,7 @@ class Telling:
     space : Space
         Space of the result for one environment.
     spare : int
-        Number of columns after an observation that `told` fills, as in `skein_uav.delay.Delay`; 0 without ages.
+        Number of columns after an observation, as in `skein_uav.delay.Delay`; 0 without ages.
     """
 
     def __init__(
@@ -78,8 +78,6 @@ class Telling:
         """Joins the parts for a batch."""
         observation = seen.observation
         if self.spare and type(observation) is np.ndarray and observation.shape[1] == self._width:
-            if self._pending:
-                observation[:, 1 - self.spare :] = seen.pending.reshape(len(observation), -1)
             return observation
         if not self._ages and not self._pending:
             return observation
@@ -99,12 +97,12 @@ def encoding(observation: gym.Space, action: gym.Space) -> Callable[[Tree], Tree
     if not _is_flat(observation) or not isinstance(action, Discrete):
         return None
     table = np.eye(action.n, dtype=np.float32) if action.n <= 64 else None  # a table is faster, but grows with the square
-    return partial(_one_hot, table, np.arange(action.start, action.start + action.n))
+    return partial(_one_hot, table, int(action.start), np.arange(action.start, action.start + action.n))
 
 
-def _one_hot(table: Any, values: Any, numbers: Any) -> Any:
-    if type(numbers) is np.ndarray and table is not None:
-        return table.take(numbers - values[0] if values[0] else numbers, 1).T
+def _one_hot(table: Any, start: int, values: Any, numbers: Any) -> Any:
+    if table is not None and type(numbers) is np.ndarray:
+        return table.take(numbers - start if start else numbers, 1).T
     return numbers[:, None] == on(numbers, values)
 
 
