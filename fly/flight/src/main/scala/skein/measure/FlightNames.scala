@@ -2,7 +2,7 @@ package skein.measure
 
 import skein.units.Decimals.{brief, counted}
 
-/** Tells flights of one name apart, so that unlike flights are neither averaged nor shown as one. */
+/** Distinguishes flights of one name, so that unlike flights are neither averaged nor shown as one. */
 private[measure] object FlightNames:
   private val MostLetters = 24
 
