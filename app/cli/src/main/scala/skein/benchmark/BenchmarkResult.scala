@@ -61,7 +61,7 @@ final case class BenchmarkRow(
       if paused.count > 1 && flown.count > 1
     yield
       val ratio = flown.mean / truth
-      math.hypot(flown.studentHalfWidth95, ratio * paused.studentHalfWidth95) / truth.abs
+      math.hypot(flown.halfWidth95, ratio * paused.halfWidth95) / truth.abs
 
   /** Mean number of violations per flight, less that of the paused flights. */
   val violations: Double =

@@ -9,7 +9,7 @@ import scala.util.Try
 import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
 import skein.link.{Address, TcpTransport}
 import skein.forward.Asking
-import skein.loop.{AnyLoop, FlightOutcome}
+import skein.loop.{AnyLoop, FlightOutcome, LoopKind}
 import skein.measure.{FlightSet, FlightSummary}
 import skein.record.{ClockKind, DuckDbRecorder}
 import skein.report.{Report, ReportSections, Typed}
@@ -126,6 +126,8 @@ final class FlyCommand(using Scenarios)
       scene = if isShared then Scene.Empty else settings.world.scene
       known = TrieMap.empty[String, Try[FlightSummary]]
       sinks = RecordOptions.Sinks(options.beside, out, scene)
+      _     = if settings.images.nonEmpty && settings.loops.contains(LoopKind.Paused) then
+        Console.err.println("paused records no images of --images; the other loops do")
       flown <- clock match
         case ClockKind.Real =>
           for

@@ -62,6 +62,9 @@ final case class LearnInFlight(
         "--learn: expected no --policy beside it, got one; fly it apart"
       file  <- LearnFile.read(folder).left.map("--learn: " + _)
       setup <- file.question.setup.left.map(mistake => s"--learn: $folder: $mistake")
+      _     <- Expect.that(!setup.isOfTeam):
+        s"--learn: expected a policy learned for the distance in a duel, by which a flight rewards it; $folder has " +
+          s"an objective of ${file.question.scenario}"
       count = settings.fleet.agents.count(_.role == setup.role)
       _ <- Expect.that(count == 1):
         s"--learn: expected a scenario with one ${PolicyFile.name(setup.role)}, who learns, got $count"

@@ -91,7 +91,7 @@ object ServeCommand
       ParserForClass[ServeOptions]
     ):
 
-  /** Greatest speed accepted; no machine simulates faster. */
+  /** Maximum speed accepted; no machine simulates faster. */
   private val MostSpeed = 1000.0
 
   protected def execute(options: ServeOptions): Either[String, Unit] =

@@ -74,7 +74,7 @@ object PredictionFigure:
     val title = panel.fittedTitle(words.mkString(", "))
     Drawing(366, 262, (title +: panel.axes) ++ lines)
 
-  /** Least number of points of a curve; fewer are drawn as discs. */
+  /** Minimum number of points of a curve; fewer are drawn as discs. */
   private val FewestOfCurve = 3
 
   private def marks(

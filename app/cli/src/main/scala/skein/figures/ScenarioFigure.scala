@@ -196,7 +196,7 @@ object ScenarioFigure:
     val plot = Drawing(plotWidth + 76, plotHeight + 84, panel.axes ++ held ++ lines)
     Legend.titled(panel, FlightTheme.link(link), plot, items*)
 
-  /** The greatest value of a curve. Of one that begins far above its second half, the greatest after it has
+  /** The maximum value of a curve. Of one that begins far above its second half, the greatest after it has
     * fallen to twice that half's: it comes into the picture from above.
     */
   private def highestShown(curve: Vector[(Double, Double)]): Double =

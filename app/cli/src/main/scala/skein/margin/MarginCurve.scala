@@ -18,12 +18,18 @@ final case class MarginPoint(link: LatencyProfile, runs: Vector[MarginRun]):
 
   def violations: Int = runs.filter(_.value.isRight).map(_.violations).sum
 
+  /** Number of runs in which the program failed. */
+  def failed: Int = without.count:
+    case MarginRun.NoResult.OfProgram(_) => true
+    case MarginRun.NoResult.OfMachine(_) => false
+
   /** Whether the point counts for the curve: it has a value, or the program failed. Runs spoiled by a busy
     * machine do not count.
     */
-  def counts: Boolean = stats.count > 0 || without.exists:
-    case MarginRun.NoResult.OfProgram(_) => true
-    case MarginRun.NoResult.OfMachine(_) => false
+  def counts: Boolean = stats.count > 0 || failed > 0
+
+  /** Whether the program failed in at least half of the runs that count. */
+  def isFailure: Boolean = failed > 0 && failed >= stats.count
 
 /** How a program's result changes with the link's mean round trip.
   *
@@ -38,15 +44,18 @@ final case class MarginCurve private (
     points: Vector[MarginPoint],
     per: Double
 ):
-  /** Deviation from the reference: 0.05 is 5 % more with a tolerance in per cent; NaN without a value. */
+  /** Deviation from the reference: 0.05 is 5 % more with a tolerance in per cent; NaN without a value, or if
+    * the program failed in half of the runs.
+    */
   def deviation(point: MarginPoint): Double =
-    if point.stats.count == 0 then Double.NaN else (point.stats.mean - reference.stats.mean) / per
+    if point.stats.count == 0 || point.isFailure then Double.NaN
+    else (point.stats.mean - reference.stats.mean) / per
 
   /** Half width of the deviation's 95 % interval, from the spread of the runs at the point and at the
     * reference.
     */
   def halfWidth(point: MarginPoint): Double =
-    math.hypot(point.stats.studentHalfWidth95, reference.stats.studentHalfWidth95) / per
+    math.hypot(point.stats.halfWidth95, reference.stats.halfWidth95) / per
 
   /** The mean round trip, ms, up to which the result stays within the tolerance, interpolated linearly. */
   def margin: Bound = holds((off, _) => off)
@@ -70,7 +79,9 @@ final case class MarginCurve private (
       case Bound.At(ms)     => s"$what up to a mean round trip of ${ms.fixed(0)} ms"
       case Bound.Beyond(ms) => s"$what as far as it was flown, to a mean round trip of ${ms.fixed(0)} ms"
       case _                => s"$what over none of these links"
-    s"$before (95 %: ${MarginCurve.text(interval.from)} to ${MarginCurve.text(interval.to)})"
+    val failed = points.filter(_.failed > 0).map: point =>
+      s"; the program failed in ${point.failed} of ${point.runs.size} runs at ${point.meanMs.fixed(0)} ms"
+    s"$before (95 %: ${MarginCurve.text(interval.from)} to ${MarginCurve.text(interval.to)})${failed.mkString}"
 
 object MarginCurve:
   /** @return Left says why there is no curve */

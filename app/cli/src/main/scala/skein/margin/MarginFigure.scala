@@ -17,7 +17,7 @@ object MarginFigure:
     val around                   = curve.tolerance.value * curve.per
     val middle                   = curve.reference.stats.mean
     def half(point: MarginPoint) =
-      Some(point.stats.studentHalfWidth95).filter(_.isFinite).getOrElse(0.0)
+      Some(point.stats.halfWidth95).filter(_.isFinite).getOrElse(0.0)
     val values = points.flatMap(point =>
       Vector(point.stats.mean - half(point), point.stats.mean + half(point))
     ) ++ Vector(middle - around, middle + around)

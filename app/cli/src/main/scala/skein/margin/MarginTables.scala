@@ -30,7 +30,7 @@ object MarginTables:
           Vector(s"off $unit".trim) ++ limits ++ Vector("runs", "without result"),
         (curve.reference +: curve.points).map: point =>
           val stats = point.stats
-          val half  = stats.studentHalfWidth95
+          val half  = stats.halfWidth95
           val mean  =
             if stats.count == 0 then ""
             else if half.isInfinite then stats.mean.brief

@@ -61,7 +61,7 @@ object ColourScale:
   /** White at zero, blue below and red above (ColorBrewer's RdBu, reversed), symmetric around zero; only one
     * side if all values have one sign.
     *
-    * @param least the least value, at most 0
+    * @param least the minimum value, at most 0
     * @param most the greatest value, at least 0
     */
   def aroundZero(least: Double, most: Double): ColourScale =

@@ -56,7 +56,7 @@ object Effort:
   /** Fresh episodes of a team: few enough for the scalar engine to simulate in seconds. */
   val TeamsFresh = 256
 
-  /** The effort of flights in virtual time, of which a few are simulated a second. */
+  /** Default numbers of episodes for flights in virtual time: only a few can be simulated per second. */
   val OfFlights: Effort = Effort(16, 1, 5, 2, onCurve = 9)
 
   def ofTeam(engine: Engine): Effort =

@@ -9,7 +9,7 @@ object LandscapeScale:
   /** The share of cells, the best ones, that are always distinguishable. */
   private val Told = 0.9
 
-  /** The greatest share of the scale that the other cells may take before it is cut. */
+  /** The maximum share of the scale that the other cells may take before it is cut. */
   private val MostOfRest = 0.25
 
   /** A scale from the least to the greatest mean. If the worst tenth of the cells would take more than a

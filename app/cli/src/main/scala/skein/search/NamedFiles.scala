@@ -7,11 +7,11 @@ import skein.units.Expect
 
 /** Digests of the files that a question names, to detect later changes. */
 object NamedFiles:
-  /** SHA-256 of the names that are files, with or without a prefix such as `file:` or `mujoco:`. */
+  /** SHA-256 of the names that are files, with or without prefixes such as `mujoco:` or `loss:1%,file:`. */
   def digests(names: Seq[String]): Map[String, String] =
     (for
       name <- names
-      path <- Seq(name, name.dropWhile(_ != ':').drop(1)).filter(isFile)
+      path <- (name +: name.indices.filter(name(_) == ':').map(at => name.drop(at + 1))).filter(isFile)
     yield path -> sha256(Path.of(path))).toMap
 
   private def sha256(file: Path) =

@@ -181,5 +181,5 @@ final case class ReadySearch(
 object ReadySearch:
   private val ShareFrom = 256
 
-  /** Least number of candidates in the play-off when flights are slow. */
+  /** Minimum number of candidates in the play-off when flights are slow. */
   private val LeastPlayOff = 2

@@ -5,7 +5,7 @@ import skein.lanes.Engine
 
 /** The engine that evaluates a team's candidates.
   *
-  * @param isVirtual whether it is so slow that only a few candidates are evaluated a second
+  * @param isVirtual whether it is so slow that only a few candidates are evaluated per second
   */
 enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String):
   /** Forward simulation with measures of quantities. */

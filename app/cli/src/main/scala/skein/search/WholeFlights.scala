@@ -56,8 +56,8 @@ object WholeFlights:
     */
   val Never = 1e6
 
-  /** @return the weighted sum of a flight's measures; None if one has no value. A time that never came counts
-    *   as the duration, as in [[ScenarioTerm.value]].
+  /** @return the weighted sum of a flight's measures; None if one has no value. A time that is never reached
+    *   counts as the duration, as in [[ScenarioTerm.value]].
     */
   def sum(terms: Vector[(Double, Measure)], flown: Tracks, durationS: Double): Option[Double] =
     val values = terms.flatMap: (weight, measure) =>
@@ -155,7 +155,7 @@ object WholeFlights:
       )
     if plain.nonEmpty then
       Some(
-        s"${plain.mkString(", ")} is of whole flights: expected a mean, rms, sd, least or most of a quantity of positions and time"
+        s"${plain.mkString(", ")} is of whole flights: expected a reduction of a quantity of positions and time"
       )
     else if refused.nonEmpty then refused.map(why => s"its end is no formula: ${why.getMessage}")
     else

@@ -22,9 +22,9 @@ import upickle.default.ReadWriter
   * @param steps total number of steps of all environments
   * @param environments number of environments that run concurrently
   * @param lessonS duration of a learning episode, s
-  * @param startLeastM least initial distance of the evader, m
-  * @param turnRateRadPerS greatest turn rate of the policy
-  * @param climbMps greatest vertical speed of the policy; 0: it keeps its altitude
+  * @param startLeastM minimum initial distance of the evader, m
+  * @param turnRateRadPerS maximum turn rate of the policy
+  * @param climbMps maximum vertical speed of the policy; 0: it keeps its altitude
   * @param episodes number of episodes of an evaluation during learning
   * @param fresh number of episodes of the final evaluation
   */
@@ -129,7 +129,8 @@ final case class LearnSetup(
   val space: LearnerSpace  = LearnerSpace(question.climbMps > 0)
   val family: PolicyFamily = PolicyFamily.learned(LearnedPolicy.shape(question.learner.hidden, space))
 
-  private def isOfTeam = game.opponent.isEmpty
+  /** Whether it learned for an objective of a scenario, in place of the distance in a duel. */
+  def isOfTeam: Boolean = game.opponent.isEmpty
 
   /** The baseline of every result: the paper's policy of the role, or the result of the scenario's own
     * policies.
@@ -176,12 +177,13 @@ final case class LearnSetup(
   def task(using Scenarios): Either[String, SideTask] =
     SideTask.of(environment, game.opponent, question.environments, question.seed)
 
-  private def environment =
+  private[training] def environment: EnvironmentSettings =
     EnvironmentSettings(
       learners = question.role,
       loop = question.conditions.loop,
       link = question.link,
       periodMs = question.conditions.periodMs,
+      movesInFlight = question.conditions.movesInFlight,
       plant = question.conditions.plant,
       sensors = question.conditions.sensors.getOrElse(""),
       altitudeM = if isOfTeam then 0 else question.conditions.altitudeM,
@@ -209,7 +211,7 @@ final case class LearnSetup(
   def policy(weights: Vector[Double]): PolicyFile =
     PolicyFile(role, family, weights ++ bounds)
 
-  /** The greatest turn rate and vertical speed, as the last parameters of [[family]]. */
+  /** The maximum turn rate and vertical speed, as the last parameters of [[family]]. */
   def bounds: Vector[Double] =
     Vector(question.turnRateRadPerS, 0.0) ++ Option.when(space.climbs)(question.climbMps)
 

@@ -31,11 +31,11 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
     val plain = subject(surround)
     assert(plain.engine(Vector(LatencyDistribution.Vpn)).text.startsWith("SIMD, "))
     assertEquals((plain.formula, plain.unit), ("off-ring", "m"))
-    val both   = subject(surround, Some("off-ring + 0*surrounded-after"))
+    val both   = subject(Whole(), Some("off-ring + 0*lasts"))
     val scalar = both.engine(Vector.empty).text
     assertEquals(
       scalar,
-      "scalar: surrounded-after is of whole flights: expected a mean, rms, sd, least or most of a quantity of positions and time"
+      "scalar: lasts is of whole flights: expected a reduction of a quantity of positions and time"
     )
     for latencyMs <- Seq(0.0, 200.0) do
       // Tracks are evaluated every 20 ms, on lines between the positions of each period; a quantity once a
@@ -51,9 +51,9 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
   test("where readings have errors, the truth is the mean over the cells' episodes"):
     def truths(objective: Option[String]) =
       val conditions = Conditions("stream", "drag", 100, 20, sensors = Some("position=5"))
-      val noisy      = subject(surround, objective, conditions)
+      val noisy      = subject(Whole(), objective, conditions)
       for episodes <- Vector(1, 2, 4) yield noisy.truth(episodes).fold(fail(_), identity)
-    for objective <- Seq(None, Some("off-ring + 0*surrounded-after")) do
+    for objective <- Seq(None, Some("off-ring + 0*lasts")) do
       assertEquals(clue(truths(objective)).distinct.size, 3)
     val calm = subject(surround)
     assertEquals(calm.truth(4), calm.truth(1))
@@ -98,6 +98,13 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
         .left
         .exists(_.startsWith("--plant: expected tilt or quadrotor, got drag: "))
     )
+
+/** [[Surround]] with a measure of whole flights. */
+final case class Whole() extends Scenario:
+  private def around                     = Surround(vehicles = 4)
+  def agents: Vector[skein.policy.Agent] = around.agents
+  override def measures: Vector[Measure] =
+    around.measures :+ Measure("lasts", "s")(tracks => Some(tracks.lastS))
 
 /** Flies north until it is far enough, climbing: late commands overshoot. */
 final case class Drift(toM: Double = 12) extends Scenario:

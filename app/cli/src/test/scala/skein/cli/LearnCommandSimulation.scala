@@ -133,7 +133,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(file.question, question)
     assertEquals(learn(folder, file.state, setup.rounds), whole)
 
-  test("a user who stops learning is shown how to continue, and soon sees the best policy's result"):
+  test("interrupted training prints how to resume it, then evaluates the best policy in fewer episodes"):
     val question = LearnCommand
       .question(LearnOptionsOf(short.updated(short.indexOf("--fresh") + 1, "150")))
       .fold(fail(_), identity)

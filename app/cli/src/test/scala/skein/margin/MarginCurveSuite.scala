@@ -56,6 +56,16 @@ class MarginCurveSuite extends munit.FunSuite:
     val dies = failing(80, NoResult.OfProgram("it ended with exit status 1"))
     assertEquals(curve(reference, point(40, 101, 101), dies).toOption.get.margin, Bound.At(40))
 
+  test("a link over which the program fails in half of the runs does so, too; fewer failures are stated"):
+    def some(failures: Int) =
+      val runs = Vector.fill(failures)(run(Left(NoResult.OfProgram("exit 1")))) ++ Vector.fill(5 - failures)(
+        run(Right(101))
+      )
+      curve(reference, point(40, 101, 101), MarginPoint(link(80), runs)).toOption.get
+    assertEquals(some(3).margin, Bound.At(40))
+    assertEquals(some(2).margin, Bound.Beyond(80))
+    assert(clue(some(2).sentence).endsWith("; the program failed in 2 of 5 runs at 80 ms"))
+
   test("a link whose runs were spoiled by the machine is ignored"):
     val busy  = failing(80, NoResult.OfMachine("too busy"))
     val flown = curve(reference, point(40, 101, 101), busy, point(120, 101, 101)).toOption.get

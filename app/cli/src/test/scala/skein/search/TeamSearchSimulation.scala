@@ -50,14 +50,16 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     val means = measures.map(measure =>
       paths.map(places =>
         val OverFlight(quantity, reduction, _) = measure.reduced.get
-        reduction.of(places.map(quantity.of), _ => fail("needs no times"), 0.02)
+        reduction.of(places.map(quantity.of), _ * 0.1, 0.1)
       ).sum / 3
     )
     assertEqualsDouble(lanes.mean, means(0) + 0.05 * means(1), 2e-3)
 
   test("a measure of whole flights is searched world by world, and the engine's line states that"):
-    val ready = setup(question.copy(objective = "surrounded-after", candidates = 4, episodes = 1))
-    assert(ready.engines.matches("scalar: surrounded-after is of whole flights.*"), ready.engines)
+    val vary  = Vector(Varied("lane-m", 2, 10), Varied("spacing-m", 4, 12))
+    val ready =
+      setup(question.copy("crossing", vary = vary, objective = "arrived", candidates = 4, episodes = 1))
+    assert(ready.engines.matches("scalar: arrived is of whole flights.*"), ready.engines)
     assert(ready.rate(1).exists(_.matches("about [0-9,]+ a second")), ready.rate(1))
     assert(!ready.isVirtual && !ready.engine(ready.space.defaults, Judge.Candidates).fliesByLanes)
     val judges = ready.judges(2)(Judge.Candidates)

@@ -14,10 +14,10 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
   private val secondsOf = mutable.HashMap.empty[Node, Node]
 
   def ofTwo(opcode: Opcode, a: Value, b: Value): Value = opcode match
-    case Opcode.DADD                      => Number(trace.add(number(a), number(b)))
-    case Opcode.DSUB                      => Number(trace.sub(number(a), number(b)))
+    case Opcode.DADD                      => Number(trace.add(plain(a), plain(b)))
+    case Opcode.DSUB                      => Number(trace.sub(plain(a), plain(b)))
     case Opcode.DMUL                      => Number(product(number(a), number(b)))
-    case Opcode.DDIV                      => Number(trace.div(number(a), number(b)))
+    case Opcode.DDIV                      => Number(trace.div(plain(a), plain(b)))
     case Opcode.DREM                      => refuse("% on doubles; StrictMath.IEEEremainder wraps angles")
     case Opcode.DCMPG                     => Compared(number(a), number(b), 1)
     case Opcode.DCMPL                     => Compared(number(a), number(b), -1)
@@ -45,7 +45,18 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
       secondsOf.get(a) match
         case Some(seconds) if b.is(1e-9) => seconds
         case Some(seconds) if b.is(1e-6) => trace.mul(seconds, trace.const(1e3))
-        case _                           => trace.mul(a, b)
+        case Some(_)                     => noNanos()
+        case None                        => if secondsOf.contains(b) then noNanos() else trace.mul(a, b)
+
+  /** A number that is no number of nanoseconds. */
+  private def plain(value: Value): Node =
+    val node = number(value)
+    if secondsOf.contains(node) then noNanos() else node
+
+  private def noNanos() =
+    refuse(
+      "it computes with nanoseconds of a length of time that depends on what is observed, or rounds a number"
+    )
 
   /** Whether a value is a duration that depends on the inputs. */
   private def isTime(values: Value*): Boolean = values.exists:
@@ -63,7 +74,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
   private def nanosOf(value: Value): Node = settled(value) match
     case Time(seconds) =>
       val nanos = trace.mul(seconds, trace.const(1e9))
-      secondsOf(nanos) = seconds
+      if !nanos.isConst then secondsOf(nanos) = seconds
       nanos
     case OneOf(_, yes, no) if isTime(yes, no) => nanosOf(Time(seconds(value)))
     case other                                => trace.const(long(other).toDouble)
@@ -103,9 +114,15 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
         case other => refuse(s"${other.name.toLowerCase(java.util.Locale.ROOT)} is not arithmetic"))
     else
       opcode match
-        case Opcode.IADD                  => trace.add(a, b)
-        case Opcode.ISUB                  => trace.sub(a, b)
-        case Opcode.IMUL                  => trace.mul(a, b)
+        case Opcode.IADD => trace.add(a, b)
+        case Opcode.ISUB => trace.sub(a, b)
+        case Opcode.IMUL =>
+          val product = trace.mul(a, b)
+          if !mostOf(product).exists(_ <= Int.MaxValue) then
+            refuse(
+              "it multiplies a whole number that is observed or remembered, which may overflow; a double does not"
+            )
+          product
         case Opcode.IAND if isTruth(a, b) => asNumber(trace.and(holds(a), holds(b)))
         case Opcode.IOR if isTruth(a, b)  => asNumber(trace.or(holds(a), holds(b)))
         case Opcode.IXOR if isTruth(a, b) =>
@@ -115,6 +132,23 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
             s"${other.name.toLowerCase(java.util.Locale.ROOT)} of a " +
               "whole number that depends on what is observed"
           )
+
+  private val bounds = mutable.HashMap.empty[Node, Option[Double]]
+
+  /** The greatest magnitude of a whole number that was chosen among constants; None if it has another source.
+    */
+  private def mostOf(node: Node): Option[Double] = bounds.getOrElseUpdate(
+    node,
+    if node.isConst then Some(node.value.abs)
+    else
+      def both(args: Seq[Node])(join: (Double, Double) => Double) =
+        mostOf(args(0)).zip(mostOf(args(1))).map(join(_, _))
+      node.op match
+        case Op.Where        => both(node.args.drop(1))(_.max(_))
+        case Op.Add | Op.Sub => both(node.args)(_ + _)
+        case Op.Mul          => both(node.args)(_ * _)
+        case _               => None
+  )
 
   def asNumber(condition: Node): Node        = trace.where(condition, trace.const(1), trace.const(0))
   private def holds(truth: Node): Node       = trace.not(trace.equal(truth, trace.const(0)))

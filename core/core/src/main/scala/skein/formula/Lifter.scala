@@ -82,8 +82,8 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
     case Long(number)    => what == java.lang.Long.valueOf(number)
     case _               => false
 
-  /** Throws [[Untraceable]] with the innermost source line outside libraries; after the method has returned,
-    * with the line of its return.
+  /** Throws [[Untraceable]] with the innermost source line outside libraries. Once the lifted method has
+    * returned, that is the line at which the last user method that it called returned.
     */
   def refuse(reason: String): Nothing =
     val own = calls.find(call => !ClassFiles.isLibrary(call.code.owner))

@@ -73,9 +73,11 @@ private[formula] final class Objects(
         change(
           id,
           (a, b) match
-            case (Record(name, of), Record(_, or))       => Record(name, fields(of, or))
-            case (Elements(of, frozen), Elements(or, _)) => Elements(of.zip(or).map(value), frozen)
-            case _                                       => a
+            case (Record(name, of), Record(_, or))        => Record(name, fields(of, or))
+            case (Fields(name, of), Fields(_, or))        => Thing.Either(name, fields(of, or))
+            case (Elements(of, one), Elements(or, other)) =>
+              Elements(of.zip(or).map(value), one || other)
+            case _ => a
         )
 
     private def fields(a: Map[String, Value], b: Map[String, Value]): Map[String, Value] =
@@ -83,7 +85,7 @@ private[formula] final class Objects(
         .map: name =>
           name -> ((a.get(name), b.get(name)) match
             case (Some(one), Some(other)) => value(one, other)
-            case (one, other)             => one.orElse(other).get)
+            case (one, other) => value(one.getOrElse(zeroOf(other.get)), other.getOrElse(zeroOf(one.get))))
         .toMap
 
     def value(a: Value, b: Value): Value = numbers.either(condition, a, b) match
@@ -92,12 +94,10 @@ private[formula] final class Objects(
 
     private def ofThings(a: Value, b: Value): Value = (thingOf(a, yes), thingOf(b, no)) match
       case (Some(one), Some(other)) =>
+        // A later change of either would not be seen in the joint object.
+        for case Made(id) <- Seq(a, b) do freeze(id)
         alikeOf(one, other) match
-          case (Record(of, x), Record(or, y)) if of == or             => make(Thing.Either(of, fields(x, y)))
-          case (Thing.Either(of, x), Record(or, y)) if of == or       => make(Thing.Either(of, fields(x, y)))
-          case (Record(of, x), Thing.Either(or, y)) if of == or       => make(Thing.Either(of, fields(x, y)))
-          case (Thing.Either(of, x), Thing.Either(or, y)) if of == or =>
-            make(Thing.Either(of, fields(x, y)))
+          case (Fields(of, x), Fields(or, y)) if of == or           => make(Thing.Either(of, fields(x, y)))
           case (Elements(x, _), Elements(y, _)) if x.size == y.size =>
             make(Elements(x.zip(y).map(value), isFrozen = true))
           case _ => OneOf(condition, a, b)
@@ -172,8 +172,21 @@ private[formula] final class Objects(
     case Null => refuse(s"it reads $name of nothing")
     case _    => refuse(s"it reads $name of a number")
 
+  private def freeze(id: Int): Unit = heap(id) match
+    case Record(name, fields)    => change(id, Thing.Either(name, fields))
+    case Elements(values, false) => change(id, Elements(values, isFrozen = true))
+    case _                       => ()
+
   /** Joins two values of the present state by a condition. */
   private def one(condition: Node, a: Value, b: Value): Value = Merge(condition, now, now).value(a, b)
+
+  /** What a field holds that one branch has not written, where the other has written this. */
+  private def zeroOf(written: Value): Value = settled(written) match
+    case _: Number        => Number(trace.const(0))
+    case _: Whole         => Whole(trace.const(0))
+    case _: (Long | Time) => Long(0)
+    case OneOf(_, a, _)   => zeroOf(a)
+    case _                => Null
 
   private def zeroOf(kind: ClassDesc): Value = kind.descriptorString match
     case "D"                      => Number(trace.const(0))
@@ -342,6 +355,13 @@ private[formula] final class Objects(
 private[formula] object Objects:
   /** A snapshot of the objects made so far, with the number of changes. */
   final case class Moment(things: Map[Int, Thing], changes: Int)
+
+  /** The class and the fields of an object, whether it may be changed or not. */
+  private object Fields:
+    def unapply(thing: Thing): Option[(String, Map[String, Value])] = thing match
+      case Thing.Record(name, fields) => Some((name, fields))
+      case Thing.Either(name, fields) => Some((name, fields))
+      case _                          => None
 
   /** Scala's specialised tuple classes, and their fields. */
   private val Specialised      = """(scala/Tuple[12])\$mc[A-Z]+\$sp""".r

@@ -41,7 +41,9 @@ final class Fusion private (
   def at(later: Instant): Option[Belief] =
     belief.filter(_.at <= later).map(_.carriedTo(later, settings.acceleration))
 
-  /** The filter with one more measurement; None if the measurement is older than all stored ones. */
+  /** The filter with one more measurement; None if it is older than the last forgotten one, or by more than
+    * `history` than the newest.
+    */
   def including(measured: Measurement): Option[Fusion] =
     val isTooOld = before.exists(_.at > measured.validAt) ||
       belief.exists(_.at.since(measured.validAt) > settings.history)

@@ -3,7 +3,7 @@ package skein.policy
 import skein.units.Vector3
 
 /** What a learner observes and decides. Its actions are shares, −1 to 1, of its largest turn to the right
-  * and, if it climbs, of its greatest vertical speed, positive up.
+  * and, if it climbs, of its maximum vertical speed, positive up.
   */
 final case class LearnerSpace(climbs: Boolean):
   /** Number of an observation's components; `outputs` is that of an action's. */
@@ -15,9 +15,9 @@ final case class LearnerSpace(climbs: Boolean):
     val level = Vector[Double](20, 20, 10, 10, 1, 1, 0.2, 0.2, 0.2)
     if climbs then level ++ Vector[Double](20, 10, 50, 10) else level
 
-  /** The components of [[PlanarObservation.fromOwnHeading]]; if it climbs, also the opponent's height above
-    * this vehicle, m; its vertical speed minus this vehicle's, m/s; this vehicle's altitude above z = 0, m,
-    * and its vertical speed, m/s; all positive up.
+  /** The network's inputs: [[PlanarObservation.fromOwnHeading]]. Climbing learners also get, positive up, the
+    * opponent's height (m) and vertical speed (m/s) relative to this vehicle, and this vehicle's altitude above
+    * z = 0 (m) and vertical speed (m/s).
     */
   def observe(seen: Observation): Array[Double] =
     val level = PlanarObservation.of(seen).fromOwnHeading
@@ -50,7 +50,7 @@ trait SharesPolicy extends Policy:
   def space: LearnerSpace
 
   /** The largest turn rate until the next decision, rad/s; the largest turn of one decision, whatever the
-    * time since the last, rad; and the greatest vertical speed, m/s.
+    * time since the last, rad; and the maximum vertical speed, m/s.
     */
   def turnRateRadPerS: Double
   def turnRad: Double
@@ -82,5 +82,5 @@ object LearnerSpace:
   /** The space of a network's observations and actions. */
   def of(shape: NeuralShape): LearnerSpace = LearnerSpace(shape.outputs == Climbing.outputs)
 
-  /** The default greatest vertical speed of policies that climb, m/s. */
+  /** Default maximum vertical speed of climbing policies, m/s. */
   val ClimbMps = 3.0

@@ -2,13 +2,13 @@ package skein.policy
 
 import skein.units.Vector3
 
-/** Flies arcs to the left and right in turn, of varying durations. The path depends neither on other vehicles
+/** Flies alternate left and right arcs of varying durations. The path depends neither on other vehicles
   * nor on the age of readings.
   *
   * @param turnRadps turn rate of the commanded velocity
   * @param leastS shortest duration of an arc
   * @param mostS longest duration of an arc
-  * @param course number of a sequence of durations; each number has a different path
+  * @param course selects the sequence of durations, like a seed; each value gives a different path
   */
 final case class Weave(speedMps: Double, turnRadps: Double, leastS: Double, mostS: Double, course: Double = 0)
     extends Policy:

@@ -144,7 +144,7 @@ final case class Violation(
 
 /** A part of a limit that plans observe, not only reports. */
 enum Kept:
-  /** Least distance between any two vehicles, in the plane, m. */
+  /** Minimum distance between any two vehicles, in the plane, m. */
   case Apart(leastM: Double)
   case Inside(fence: Fence)
 

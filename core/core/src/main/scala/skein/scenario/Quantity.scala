@@ -41,11 +41,9 @@ object Quantity:
 
   private[skein] def whose(quantity: Quantity): String = OwnFailure.named("quantity", quantity)
 
-/** A quantity minus a bound. */
 private[scenario] final case class Excess(quantity: Quantity, bound: Double) extends Quantity:
   def of(positions: Positions): Double = quantity.of(positions) - bound
 
-/** A bound minus a quantity. */
 private[scenario] final case class Shortfall(quantity: Quantity, bound: Double) extends Quantity:
   def of(positions: Positions): Double = bound - quantity.of(positions)
 
@@ -53,7 +51,7 @@ private[scenario] final case class Shortfall(quantity: Quantity, bound: Double) 
 enum Reduction:
   case Mean, Rms, Sd, Least, Most
 
-  /** First time of the least or the greatest value, s. */
+  /** First time of the minimum or the maximum value, s. */
   case LeastAt, MostAt
 
   /** Total time in which the value was above 0, s. */

@@ -87,7 +87,7 @@ class TracksSuite extends munit.FunSuite:
     assertEquals(of(Window.Last(10.6)), None)
 
   test("reductions of the values 3, 4 and 8"):
-    val values = Vector(3.0, 4.0, 8.0)
+    val values                   = Vector(3.0, 4.0, 8.0)
     def of(reduction: Reduction) = reduction.of(values, 10.0 + _, 1)
     assertEquals(of(Reduction.Mean), 5.0)
     assertEqualsDouble(of(Reduction.Rms), math.sqrt(89 / 3.0), 1e-12)

@@ -121,7 +121,12 @@ object OnnxFormat:
         def number(key: String, otherwise: Long) = other.get(key).flatMap(_.toLongOption).getOrElse(otherwise)
         val read                                 = beside(file, number("offset", 0), number("length", -1))
         raw = Some(read.fold(reason => throw Mistake(reason), identity))
-      val values = raw.fold(numbers.result())(unpacked(element, _))
+      // Half floats that are not raw are stored by their bits (onnx.proto3, TensorProto.int32_data).
+      val listed = numbers.result()
+      val plain  =
+        if element != Float16 then listed
+        else listed.map(bits => java.lang.Float.float16ToFloat(bits.toShort).toDouble)
+      val values = raw.fold(plain)(unpacked(element, _))
       if values.size != count then
         throw Mistake(
           s"tensor '$name': expected ${dimensions.mkString(" × ")} numbers, got ${values.size}"
@@ -137,7 +142,7 @@ object OnnxFormat:
       case Float64 => all(8)(buffer.getDouble)
       case 6       => all(4)(buffer.getInt)
       case 7       => all(8)(buffer.getLong.toDouble)
-      case 10      => all(2)(java.lang.Float.float16ToFloat(buffer.getShort))
+      case Float16 => all(2)(java.lang.Float.float16ToFloat(buffer.getShort))
       case _       => all(1)(buffer.get)
 
   private def port(bytes: Array[Byte]): Port =

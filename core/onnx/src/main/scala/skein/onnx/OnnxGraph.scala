@@ -15,6 +15,7 @@ final case class OnnxGraph(
 
 object OnnxGraph:
   val Float32 = 1
+  val Float16 = 10
   val Float64 = 11
 
   /** An operation of the graph.

@@ -51,7 +51,7 @@ private[buffer] final case class ObservedClock private (
   private def shown: Instant = alignment.receivedAt - alignment.offset
 
 private[buffer] object ObservedClock:
-  /** Greatest age of the newest reading at which the clock counts as known: ten intervals of readings. */
+  /** Maximum age of the newest reading at which the clock counts as known: ten intervals of readings. */
   val MostAge: Span = Span.ofMillis(100)
 
   /** Shortest and longest time over which a rate is measured. */

@@ -182,7 +182,7 @@ private[flight] final class AirSimFleet(
       if startsAirborne then preparation.place(settings.fleet)
       else preparation.climb(settings.fleet, address, settings.commands)
     prepared
-      .flatMap(result => client.close().map(_ => result))
+      .transformWith(result => client.close().transform(_ => result))
       .map(_.fold(reason => throw CannotFly(reason), identity))
 
   /** Starts the emulated link, if the flight has one. */

@@ -106,9 +106,12 @@ final class EnvironmentSimulator private (
         failed.toLeft(Stamped(last.agents(index).kinematics, simulated, sentAt, clock.now()))
 
     def act(action: Action, lasts: Span): Future[Answer] = action.byVelocity match
-      case Action.Velocity(velocity, _)         => go(lasts)(_ => velocity)
-      case Action.VelocityAt(north, east, _, _) => go(lasts)(_ => Vector3(north, east, 0))
-      case Action.Position(place, speed, _)     =>
+      case Action.Velocity(velocity, _)            => go(lasts)(_ => velocity)
+      case Action.VelocityAt(north, east, down, _) =>
+        go(lasts)(now =>
+          Vector3(north, east, (down.value - now.positionNed.z).max(-MostClimbMps).min(MostClimbMps))
+        )
+      case Action.Position(place, speed, _) =>
         go(lasts)(now => GoTo.velocityNed(now.positionNed, now.velocityNed, place, speed))
       case Action.Hover => hover()
       case other        =>
@@ -144,6 +147,9 @@ final class EnvironmentSimulator private (
           velocities = velocities.updated(index, Vector3.Zero)
 
 object EnvironmentSimulator:
+  /** Maximum vertical speed towards a commanded altitude, m/s. */
+  private val MostClimbMps = 3.0
+
   private type Answer = Either[VehicleError, Boolean]
 
   /** Name and columns of its measurements in a recording; 1 stands for true. */

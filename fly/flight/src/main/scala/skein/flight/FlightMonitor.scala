@@ -26,13 +26,16 @@ final class FlightMonitor(
   private val heard                = AtomicLong(Long.MinValue)
   @volatile private var lastBroken = Option.empty[Event]
   @volatile private var isOfTeams  = false
-  private val clocks               = AtomicReference(TimeAxis.begun)
-  private val places               = AtomicReference(Map.empty[String, Stamped[Kinematics]])
-  private val landing              = AtomicReference(Set.empty[String])
-  private val firstAt              = AtomicLong(Long.MaxValue)
-  private val lastAt               = AtomicLong(Long.MinValue)
-  private val displaced            = AtomicReference(Option.empty[String])
-  private val moves                = AtomicReference(Map.empty[String, ForeignMoves])
+
+  /** The last answer that arrived after its time-out. */
+  @volatile private var lastLate = Option.empty[Event]
+  private val clocks             = AtomicReference(TimeAxis.begun)
+  private val places             = AtomicReference(Map.empty[String, Stamped[Kinematics]])
+  private val landing            = AtomicReference(Set.empty[String])
+  private val firstAt            = AtomicLong(Long.MaxValue)
+  private val lastAt             = AtomicLong(Long.MinValue)
+  private val displaced          = AtomicReference(Option.empty[String])
+  private val moves              = AtomicReference(Map.empty[String, ForeignMoves])
 
   def offer(record: Recordable): Unit =
     record match
@@ -41,11 +44,14 @@ final class FlightMonitor(
       case move: CommandRow        => movesLast.foreach(_ => moved(move.vehicle)(_.sent(move)))
       case move: Acknowledgement   => movesLast.foreach(lasts => moved(move.vehicle)(_.ended(move, lasts)))
       case event: Event if event.kind == EventKind.Disconnected => lastBroken = Some(event)
+      case event: Event if event.kind == EventKind.LateReply    => lastLate = Some(event)
       case _                                                    => ()
     recorder.offer(record)
 
   def failure: Future[RecordError]                  = recorder.failure
   def close(): Future[Either[RecordError, Written]] = recorder.close()
+
+  def late: Option[Event] = lastLate
 
   private def decided(decision: LaterDecision): Unit =
     newest = Some(decision)

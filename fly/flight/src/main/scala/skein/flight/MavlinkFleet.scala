@@ -27,9 +27,15 @@ private[flight] final class MavlinkFleet(
   import MavlinkFleet.*
   import system.dispatcher
 
-  private val systems  = fleet.agents.indices.map(_ + 1).toVector
+  private val systems = fleet.agents.indices.map(_ + 1).toVector
   private val settings =
-    OffboardSettings(highestM = (fleet.agents.map(agent => -agent.startPositionNed.z).max + AboveM).max(120))
+    // Vehicles climb to their layers first, and a team may start far apart.
+    val starts = fleet.agents.map(_.startPositionNed)
+    val layers = StartPositioning.LayerM * (systems.size + 1)
+    OffboardSettings(
+      farthestM = (starts.map(_.copy(z = 0).norm).max + AsideM).max(1000),
+      highestM = (-starts.map(_.z).min + layers.max(AboveM)).max(120)
+    )
 
   /** Brings all to their starts, over a separate connection: this is not part of the flight. */
   def prepare(): Future[Either[String, Done]] =
@@ -47,7 +53,7 @@ private[flight] final class MavlinkFleet(
           .fly(starts)
           .map(_ => Right(Done))
           .recover { case StartPositioning.NotReady(reason) => Left(reason) }
-          .flatMap(result => link.close().map(_ => result))
+          .transformWith(result => link.close().transform(_ => result))
 
   /** Opens the connection of the flight, and aligns the clocks over it before any decision. */
   def open(
@@ -83,8 +89,9 @@ private[flight] final class MavlinkFleet(
     answer.map(_.fold(error => throw StartPositioning.NotReady(error.message), identity))
 
 private object MavlinkFleet:
-  /** Height of the geofence above the highest start, m: vehicles climb to their layers first. */
+  /** Minimum height of the geofence above the highest start, and its distance from the farthest, m. */
   private val AboveM = 100.0
+  private val AsideM = 500.0
 
   /** Number of TIMESYNCs before the first decision, which take 3 s. */
   private val Exchanges = 300

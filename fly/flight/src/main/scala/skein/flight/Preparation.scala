@@ -58,21 +58,24 @@ final class Preparation(
       _   <- if paused then call(client.resume()) else Future.unit
       all <- everyVehicle(fleet)((vehicle, agent) => Future.successful((vehicle, agent)))
       vehicles = all.filter((_, agent) => commands(agent.name))
+      flying   = all.collect { case (multirotor: Multirotor, agent) => (multirotor, agent) }
       _ <- Future.traverse(vehicles.collect { case (car: Car, agent) => (car, agent) })(park)
       _ <- StartPositioning
-        .fly(vehicles.collect { case (multirotor: Multirotor, agent) =>
-          StartPositioning.Starting(
-            agent.startPositionNed + Vector3(0, 0, multirotor.originNed.z),
-            Approach(
-              agent.name,
-              AirSimVehicle(multirotor, _ => ()),
-              clock,
-              calledOff,
-              Option.when(byTruth)(() => multirotor.groundTruth().map(_.left.map(_.message)))
+        .fly(
+          flying.map: (multirotor, agent) =>
+            StartPositioning.Starting(
+              agent.startPositionNed + Vector3(0, 0, multirotor.originNed.z),
+              Approach(
+                agent.name,
+                AirSimVehicle(multirotor, _ => ()),
+                clock,
+                calledOff,
+                Option.when(byTruth)(() => multirotor.groundTruth().map(_.left.map(_.message)))
+              ),
+              () => leaveGround(multirotor)
             ),
-            () => leaveGround(multirotor)
-          )
-        })
+          index => commands(flying(index)._2.name)
+        )
         .recoverWith:
           case failed: NotReady =>
             taken(vehicles.map(_._1), at).map(why => throw why.fold(failed)(NotReady(_)))

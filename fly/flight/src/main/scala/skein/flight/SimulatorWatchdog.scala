@@ -3,6 +3,7 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import scala.util.Success
+import skein.forward.Asking
 import skein.loop.{Flight, FlightOutcome, UntilCertain}
 import skein.record.{Event, EventKind}
 import skein.units.*
@@ -152,7 +153,8 @@ private[flight] final class SimulatorWatchdog(
         asking = false
 
   private def silence(now: Instant, lasts: String) =
-    SimulatorWatchdog.silence(simulator, lasts, deciding(), now)
+    val late = monitor.late.filter(event => now.since(event.at) < GivesUp).map(_.detail)
+    SimulatorWatchdog.silence(simulator, lasts, deciding(), now, late)
 
   private def note(at: Instant, kind: EventKind, line: String): Unit =
     monitor.offer(Event(at, kind, None, line))
@@ -189,12 +191,16 @@ private[flight] object SimulatorWatchdog:
     */
   def within(period: Span, askTimeout: Span): Span = ToldAfter.max(period * 2 + askTimeout)
 
-  /** The report of a silence: a loop that waits for a policy sends no requests. */
+  /** The report of a silence: a loop that waits for a policy sends no requests.
+    *
+    * @param late what answered last after its time-out, if anything did
+    */
   def silence(
       simulator: String,
       lasts: String,
       deciding: Option[(vehicle: String, since: Instant)],
-      now: Instant
+      now: Instant,
+      late: Option[String] = None
   ): String =
     val why = deciding
       .map(one => (one.vehicle, now.since(one.since)))
@@ -202,6 +208,7 @@ private[flight] object SimulatorWatchdog:
         case (vehicle, since) if since > Slow =>
           s": it is not asked while $vehicle's policy has not decided " +
             s"for ${seconds(since)}; --deadline limits that"
-    s"no answer from the simulator at $simulator for $lasts${why.getOrElse("")}"
+    val tardy = late.fold("")(what => s" within the time-out of ${Asking.Timeout.toMillis.round} ms: $what")
+    s"no answer from the simulator at $simulator for $lasts$tardy${why.getOrElse("")}"
 
   private def seconds(span: Span): String = span.toSeconds.fixed(1) + " s"

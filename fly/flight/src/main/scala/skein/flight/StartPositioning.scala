@@ -18,18 +18,22 @@ private[flight] object StartPositioning:
   final case class NotReady(reason: String) extends RuntimeException(reason)
 
   /** Distance between two vehicles' layers, m: more than a vehicle's overshoot. */
-  private val LayerM = 5.0
+  val LayerM = 5.0
 
-  /** Moves the vehicles until all are at rest and look north; fails with [[NotReady]]. */
-  def fly(vehicles: Vector[Starting])(using ExecutionContext): Future[Unit] =
-    val highest = vehicles.map(_.startNed.z).min
-    val layered = vehicles.zipWithIndex.map((vehicle, index) => (vehicle, highest - (index + 1) * LayerM))
+  /** Moves vehicles until all are at rest and look north; fails with [[NotReady]].
+    *
+    * @param team the whole team. Each vehicle has a layer of its own, also if other processes move the others
+    * @param moves selects the vehicles to move, by index
+    */
+  def fly(team: Vector[Starting], moves: Int => Boolean = _ => true)(using ExecutionContext): Future[Unit] =
+    val layered = team.zipWithIndex.collect:
+      case (vehicle, index) if moves(index) => (vehicle, team.map(_.startNed.z).min - (index + 1) * LayerM)
     for
       _ <- Future.traverse(layered)((one, down) =>
         one.leaveGround().flatMap(above => go(one, above.copy(z = down), Approach.Passing))
       )
       _ <- Future.traverse(layered)((one, down) => go(one, one.startNed.copy(z = down), Approach.Passing))
-      _ <- Future.traverse(vehicles)(one => go(one, one.startNed, Approach.AtRest))
+      _ <- Future.traverse(layered)((one, _) => go(one, one.startNed, Approach.AtRest))
     yield ()
 
   private def go(one: Starting, goalNed: Vector3, limits: Approach.Limits)(using

@@ -17,10 +17,10 @@ import skein.units.*
   * @param blocksPerSlice number of blocks of 128 candidates in a slice, which takes some 0.1 ms; between two
   *   slices a search checks its time
   * @param turningRadiusM turning radius of a vehicle at its commanded speed, m
-  * @param slowestShare least commanded speed, as a fraction of the vehicle's speed; 1: only its heading is
+  * @param slowestShare minimum commanded speed, as a fraction of the vehicle's speed; 1: only its heading is
   *   planned
   * @param separationM separation to be kept from vehicles other than the opponent, m; 0: none
-  * @param geofenceM greatest distance from the origin to north and south, east and west, m; 0: none
+  * @param geofenceM maximum distance from the origin to north and south, east and west, m; 0: none
   * @param kept the scenario's limits that plans keep, with the margin [[PlanSettings.Doubt]], or
   *   [[PlanSettings.SpeedDoubt]] of speeds; not part of the text
   */

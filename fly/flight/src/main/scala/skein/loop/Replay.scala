@@ -321,10 +321,11 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
   private def where(decision: DecisionRow): String = s"decision ${decision.sequence} of ${decision.vehicle}"
 
 object Replay:
-  /** State of the repeated decisions.
+  /** State of a replay.
     *
-    * @param jointly state of vehicles that plan
-    * @param decided last joint decision, by vehicle and number
+    * @param single the deciders' states, by vehicle index
+    * @param jointly state of the vehicles that plan jointly
+    * @param decided decisions of the last joint round, by vehicle and sequence number
     */
   private final case class Minds(
       single: Vector[DecisionState],

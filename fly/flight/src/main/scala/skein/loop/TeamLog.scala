@@ -121,7 +121,10 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     for breach <- plan.breach do
       note(EventKind.LimitBroken, Some(vehicle), s"in the plan of decision ${decision.sequence}: $breach")
 
-  /** A decision of a vehicle that plans, with its inputs. */
+  /** Records a decision with its inputs.
+    *
+    * @param regardsTeam whether the policy observes the other vehicles
+    */
   def decided(decision: Decision, regardsTeam: Boolean): Unit =
     val others = if regardsTeam then rows.sighted(decision) else Vector.empty
     recorder.offer(LaterDecision(

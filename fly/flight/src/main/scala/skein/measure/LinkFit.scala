@@ -10,7 +10,7 @@ import skein.units.Span
   * @param burst mean number of requests that were lost in a row; None if no more than by chance
   * @param correlatedS correlation time of successive round trips; None if no longer than by chance
   * @param logNormal median in ms, and standard deviation of the logarithm
-  * @param distance greatest distance between the log-normal and the measured distribution function
+  * @param distance maximum distance between the log-normal and the measured distribution function
   */
 final case class LinkFit(
     samples: Int,

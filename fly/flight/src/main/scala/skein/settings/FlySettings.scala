@@ -222,7 +222,7 @@ object FlightPlan:
   def fileName(id: String): String = id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb"
 
 object FlySettings:
-  /** Greatest altitude, m: forward simulation and the built-in simulator use the air density at the ground.
+  /** Maximum altitude, m: forward simulation and the built-in simulator use the air density at the ground.
     */
   val MostAltitudeM = 1000.0
 
@@ -310,6 +310,7 @@ object FlySettings:
         s"deadline: expected more than 0, got ${settings.deadline.fold(0.0)(_.toMillis)} ms"
       ),
       lateMistake(settings),
+      idleMistake(settings, config),
       settings.policies.find(file => !isFlownIn(settings.fleet, file)).map(file =>
         s"policies: expected with a scenario of a ${PolicyFile.name(file.role)} and " +
           s"vehicles of another role, got with '${settings.scenario.name}'"
@@ -352,6 +353,24 @@ object FlySettings:
       val which = if settings.deadline.isDefined then "deadline" else "period"
       s"$which: expected more than planning.deadline, for which a solver searches " +
         s"its plans, ${searched.toMillis} ms; got ${within.toMillis} ms"
+
+  /** The mistake of an option that no loop of the flights regards. */
+  private def idleMistake(settings: FlySettings, config: Config): Option[String] =
+    def isGiven(key: String) = optionAt(key, config).isDefined
+    def only(idle: AnyLoop*) = settings.loops.nonEmpty && settings.loops.forall(idle.contains)
+    val loops                = settings.loops.map(_.label).mkString(", ")
+    val predicts             = settings.loops.exists(loop =>
+      Seq(LoopKind.Predictive, LoopKind.Plan).contains(loop) || loop.isInstanceOf[OwnLoop]
+    )
+    if settings.deadline.isDefined && settings.solver.isEmpty && only(LoopKind.Paused, LoopKind.Plan) then
+      Some(s"deadline: expected with a loop in which policies decide by the clock, got with $loops alone")
+    else if isGiven("fallback") && settings.deadline.isEmpty && settings.solver.isEmpty then
+      Some("fallback: expected with deadline or solver, got it alone")
+    else if isGiven("predictor") && !predicts then
+      Some(s"predictor: expected with a loop that predicts, such as predictive, got with $loops")
+    else if settings.images.nonEmpty && only(LoopKind.Paused) then
+      Some("images: expected with a loop other than paused, which records none")
+    else None
 
   private def packetMistake(settings: FlySettings): Option[String] =
     if !settings.planInPacket then None

@@ -115,6 +115,6 @@ private def vpnTimes(times: Int): LatencyProfile =
     val off   = all.map(headline).zip(truths).map((of, truth) => 100 * (of / truth - 1))
     val stats = RunningStats.of(off.size)(off)
     println(
-      f"vpn x $times, plans $plans, ${strangers.label}%-8s: ${stats.mean.signed(1)} ± ${stats.studentHalfWidth95.fixed(1)} %% " +
+      f"vpn x $times, plans $plans, ${strangers.label}%-8s: ${stats.mean.signed(1)} ± ${stats.halfWidth95.fixed(1)} %% " +
         off.map(_.signed(1)).mkString(", ")
     )

@@ -45,6 +45,6 @@ import skein.units.Decimals.{fixed, signed}
     val off   = flew.map(_ / truth - 1).map(_ * 100)
     val stats = RunningStats.of(off.size)(off)
     println(
-      s"$text, plans $plans: ${stats.mean.signed(1)} ± ${stats.studentHalfWidth95.fixed(1)} %: " +
+      s"$text, plans $plans: ${stats.mean.signed(1)} ± ${stats.halfWidth95.fixed(1)} %: " +
         off.map(_.signed(1)).mkString(", ")
     )

@@ -11,7 +11,7 @@ import skein.signal.LatencyProfile
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Given the delays of a flight in virtual time, the scalar forward simulation repeats it, to the last bit:
+/** Given the delays of a flight in virtual time, the scalar forward simulation reproduces it, to the last bit:
   * every vehicle is read at equal nanoseconds and positions, and receives equal headings.
   */
 class RolloutParitySimulation extends munit.FunSuite, Unhurried:
@@ -112,7 +112,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
 
   private def recordedStart(flown: TappedFlight): Instant = flown.recording.readings.head.state.validAt
 
-  test("forward simulation repeats paused, which has no delays"):
+  test("forward simulation reproduces paused, which has no delays"):
     check(LoopKind.Paused, LatencyProfile.none, 1)
 
   for
@@ -140,10 +140,10 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       (LoopKind.Predictive, "outage:1s/10s,vpn", 1)
     )
   do
-    test(s"forward simulation repeats ${loop.label} over $link"):
+    test(s"forward simulation reproduces ${loop.label} over $link"):
       check(loop, profile(link), seed, duration = if link == "vpn-mixed" then minute else once)
 
-  test("forward simulation repeats stream over vpn at a low altitude, where vehicles respond faster"):
+  test("forward simulation reproduces stream over vpn at a low altitude, where vehicles respond faster"):
     check(LoopKind.Stream, profile("vpn"), 4, PaperDuel(altitudeM = 6))
 
   for (team, loop) <- Seq(
@@ -158,13 +158,13 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     )
   do
     test(
-      s"forward simulation repeats ${loop.label} for ${team.name}, whose policies regard all vehicles"
+      s"forward simulation reproduces ${loop.label} for ${team.name}, whose policies regard all vehicles"
     ):
       val link = if loop == LoopKind.Paused then LatencyProfile.none else LatencyProfile.vpn
       check(loop, link, 5, team, duration = Span.ofSeconds(8))
 
   test(
-    "forward simulation repeats futures over direct for twenty vehicles, with eighty overlapping tasks"
+    "forward simulation reproduces futures over direct for twenty vehicles, with eighty overlapping tasks"
   ):
     check(
       LoopKind.Futures,
@@ -187,27 +187,27 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     (loop, links) <- ties
     link          <- links
   do
-    test(s"forward simulation repeats ${loop.label} over $link, where events coincide"):
+    test(s"forward simulation reproduces ${loop.label} over $link, where events coincide"):
       check(loop, profile(link), 1, duration = Span.ofSeconds(6))
 
   for loop <- Seq(LoopKind.Futures, LoopKind.Stream) do
     test(
-      s"forward simulation repeats ${loop.label} over vpn with two duels, each against the nearest opponent"
+      s"forward simulation reproduces ${loop.label} over vpn with two duels, each against the nearest opponent"
     ):
       check(loop, LatencyProfile.vpn, 1, PaperDuel(pairs = 2))
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"forward simulation repeats ${loop.label} over vpn with four kinds of policies, with memories"):
+    test(s"forward simulation reproduces ${loop.label} over vpn with four kinds of policies, with memories"):
       check(loop, LatencyProfile.vpn, 2, AnyPolicies(), Span.ofSeconds(8))
 
-  test("forward simulation repeats paused with four kinds of policies"):
+  test("forward simulation reproduces paused with four kinds of policies"):
     check(LoopKind.Paused, LatencyProfile.none, 2, AnyPolicies(), Span.ofSeconds(8))
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"forward simulation repeats ${loop.label} over vpn in three dimensions, with climbs and turns"):
+    test(s"forward simulation reproduces ${loop.label} over vpn in three dimensions, with climbs and turns"):
       check(loop, LatencyProfile.vpn, 3, InSpace(), Span.ofSeconds(8))
 
-  test("forward simulation repeats paused in three dimensions"):
+  test("forward simulation reproduces paused in three dimensions"):
     check(LoopKind.Paused, LatencyProfile.none, 3, InSpace(), Span.ofSeconds(8))
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
@@ -232,10 +232,12 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
 
   // If delays are equal in both directions, a flight knows the true ages of its readings.
   for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
-    test(s"forward simulation repeats ${loop.label} over 100 ms, with a policy that depends on ages and the time"):
+    test(
+      s"forward simulation reproduces ${loop.label} over 100 ms, with a policy that depends on ages and the time"
+    ):
       check(loop, profile("constant:100ms"), 1, AnyPolicies(byAges = true), Span.ofSeconds(6))
 
-  test("forward simulation repeats stream over vpn as published: spread requests, a decision at each answer"):
+  test("forward simulation reproduces stream over vpn as published: spread requests, a decision at each answer"):
     check(LoopKind.Stream, LatencyProfile.vpn, 3, PaperDuel(asPublished = true))
 
   private def profile(name: String): LatencyProfile =

@@ -31,6 +31,18 @@ class SignsOfLifeSuite extends munit.FunSuite:
       clue(told(500)).endsWith("while Pursuer's policy has not decided for 1.5 s; --deadline limits that")
     )
 
+  test("if answers come after their time-out, the report of the silence says so"):
+    assertEquals(
+      SimulatorWatchdog.silence(
+        "localhost:1",
+        "1.0 s",
+        None,
+        at(2000),
+        Some("getState answered after 520 ms")
+      ),
+      "no answer from the simulator at localhost:1 for 1.0 s within the time-out of 500 ms: getState answered after 520 ms"
+    )
+
   test("a simulator that answers within a flight's period is never silent, however long the period is"):
     assert(SimulatorWatchdog.within(Span.ofMillis(100), Asking.Timeout) < Span.ofMillis(850))
     for seconds <- Seq(0.1, 1.0, 10.0) do

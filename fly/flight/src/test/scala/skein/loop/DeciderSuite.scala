@@ -177,7 +177,7 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(foreseen(1150).actsIn.toMillis, 50, 0.01)
     assertEquals(foreseen(1050).actsIn, Span.Zero, "what was to act already acts now")
     // The own reading was sampled 60 ms before, at 1040 ms, and the first one 640 ms before that.
-    val later = memory.copy(firstReadAt = Some(millis(400)))
+    val later                  = memory.copy(firstReadAt = Some(millis(400)))
     def timeAt(view: TeamView) = pursuer.observation(later, view, millis(200)).time.toMillis
     assertEqualsDouble(timeAt(moved), 700, 0.01)
     assertEqualsDouble(heard.time.toMillis, 60, 0.01)

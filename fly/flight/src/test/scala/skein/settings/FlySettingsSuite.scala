@@ -101,7 +101,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       Right("plan: Pursuer plans; Evader flies by its own policy")
     )
 
-  test("knowledge that consists only of positions is refused if others' commands or policies are needed"):
+  test("knows = positions is refused with the loop plan or a solver, which need policies or commands of others"):
     assertTold("knows = some", "2: skein.fly.knows: expected all or positions, got 'some'")
     assertTold(
       "knows = positions, loops = [plan]",
@@ -111,6 +111,17 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assertTold(
       "knows = positions, solver = \"link:vpn\", loops = [stream]",
       "2: skein.fly.knows: expected all with a solver, which is told every command, got positions"
+    )
+
+  test("a deadline or images that no chosen loop regards are refused"):
+    for loops <- Seq("paused", "plan", "paused, plan") do
+      assertTold(
+        s"deadline = 50ms, loops = [$loops]",
+        s"2: skein.fly.deadline: expected with a loop in which policies decide by the clock, got with $loops alone"
+      )
+    assertTold(
+      "images = [\"front_center@10\"], loops = [paused]",
+      "2: skein.fly.images: expected with a loop other than paused, which records none"
     )
 
   test("how others are predicted is refused if their commands are known"):

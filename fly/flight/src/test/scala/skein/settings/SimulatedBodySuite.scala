@@ -6,7 +6,7 @@ class SimulatedBodySuite extends munit.FunSuite:
     for ms <- Seq(1, 0.5, 0.25, 0.2, 1.0 / 3, 0.001) do assert(SimulatedBody.meetsSensors(ms * 1e-3), ms)
     for ms <- Seq(3, 2, 1.001, 0.9, 0.7, 0.3, 0.09999) do assert(!SimulatedBody.meetsSensors(ms * 1e-3), ms)
 
-  test("a deviating body is refused for autopilots, and the exact one is not"):
+  test("external autopilots accept AirSim's multirotor, but not one with deviations"):
     def refusal(text: String) = SimulatedBody.parse(text).fold(fail(_), identity).refusesAutopilots
     assertEquals(refusal("airsim"), None)
     assertEquals(

@@ -233,7 +233,7 @@ class LoopAccountSuite extends munit.FunSuite:
     assert(slow("reset"))
     assert(!slow("simPause"))
 
-  test("an object counts as other vehicles' data only while it is read"):
+  test("readings of an object count as others' data only as long as the program keeps requesting them"):
     def others(reads: Int => Boolean) =
       val program = Program()
       for tick <- 0 until 100 do

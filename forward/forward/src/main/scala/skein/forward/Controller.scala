@@ -86,11 +86,11 @@ private[skein] final class Controller(
   private var lastDecidedAt = Controller.Never
 
   /** When this vehicle's reading of the first decision was sampled. */
-  private var firstReadAt = Controller.Never
-  private var decided       = 0.0
-  private var sent          = 0.0
-  private var sentNumber    = 0
-  private var made, unused  = 0
+  private var firstReadAt  = Controller.Never
+  private var decided      = 0.0
+  private var sent         = 0.0
+  private var sentNumber   = 0
+  private var made, unused = 0
 
   private val choosing       = Choosing(own, world.responses(agent))
   private val startDown      = Metres(own.altitudeDownM)

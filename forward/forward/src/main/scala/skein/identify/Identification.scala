@@ -1,7 +1,7 @@
 package skein.identify
 
 import skein.forecast.Structure
-import skein.signal.NormalQuantile
+import skein.signal.StudentQuantile
 import skein.units.Decimals.fixed
 import skein.vehicle.{ObservedPlant, PlantFlight}
 
@@ -131,7 +131,7 @@ object Identification:
       blocks: Int,
       samples: Int
   ): Identification =
-    val quantile = studentQuantile(blocks - 1)
+    val quantile = StudentQuantile.twoSided95(blocks - 1)
     val fitted   = structure.space.axes.zipWithIndex.map: (axis, i) =>
       val value = solution.parameters(i)
       Fitted(
@@ -171,8 +171,3 @@ object Identification:
       val spreads = scores.map: score =>
         inverse.map(row => LeastSquares.dot(row, score))
       Array.tabulate(n)(i => math.sqrt(spreads.map(s => s(i) * s(i)).sum * blocks / (blocks - 1)))
-
-  /** 97.5 % quantile of Student's distribution, by the first term of its expansion about the normal one. */
-  private def studentQuantile(degrees: Int): Double =
-    val z = NormalQuantile.TwoSided95
-    z + (z * z * z + z) / (4 * degrees)

@@ -1,6 +1,6 @@
 package skein.optimise
 
-import skein.signal.NormalQuantile
+import skein.signal.StudentQuantile
 
 /** Count and mean of values, and the sum of their squared deviations from the mean. */
 final case class RunningStats(count: Int, mean: Double, squares: Double):
@@ -27,29 +27,14 @@ final case class RunningStats(count: Int, mean: Double, squares: Double):
   /** Standard deviation of the values; 0 for fewer than two. */
   def sd: Double = if count < 2 then 0.0 else math.sqrt(squares / (count - 1))
 
-  /** Half width of the mean's 95 % confidence interval, by the normal approximation. */
-  def halfWidth95: Double =
-    if count == 0 then Double.PositiveInfinity else NormalQuantile.TwoSided95 * sd / math.sqrt(count)
-
-  /** Half width of the mean's 95 % confidence interval for a few normally distributed values, by Student's
-    * distribution; infinite for fewer than two values.
+  /** Half width of the mean's 95 % confidence interval for normally distributed values; infinite for fewer
+    * than two.
     */
-  def studentHalfWidth95: Double =
+  def halfWidth95: Double =
     if count < 2 then Double.PositiveInfinity
-    else if count - 2 < RunningStats.student.length then
-      RunningStats.student(count - 2) * sd / math.sqrt(count)
-    else halfWidth95
+    else StudentQuantile.twoSided95(count - 1) * sd / math.sqrt(count)
 
 object RunningStats:
-  /** The 97.5 % quantiles of Student's distribution for 1, 2, … degrees of freedom (Abramowitz and Stegun,
-    * "Handbook of mathematical functions", table 26.10).
-    */
-  private val student = Vector(
-    12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201,
-    2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056,
-    2.052, 2.048, 2.045, 2.042
-  )
-
   /** Whether the statistics are pairwise [[RunningStats.isSame identical]]. */
   def areSame(some: Seq[RunningStats], others: Seq[RunningStats]): Boolean =
     some.corresponds(others)(_.isSame(_))

@@ -32,7 +32,7 @@ final case class ScenarioTerm(measure: Measure) extends Term:
       case Window.Last(seconds)  => durationS - math.floor(seconds / periodS + 1e-9) * periodS
     Judged(by.quantity, by.reduction, fromS, periodS)
 
-  /** A time that never came counts as the episode's duration. */
+  /** A time that is never reached counts as the episode's duration. */
   def value(computed: Float, durationS: Double): Double =
     if measure.reduced.exists(_.reduction.mayBeNever) then computed.toDouble.min(durationS) else computed
 

@@ -47,9 +47,9 @@ final class JointPlanner:
     val tracks = problem.parts.zip(plans).map((part, plan) => track(problem, part, plan))
     JointPlan(plans, tracks, last.fold(0)(_.turn), 0)
 
-  /** Searches one slice for the vehicle whose turn it is.
+  /** Improves the plan of the vehicle whose turn it is by one slice of search.
     *
-    * @param search number of the search; parallel searches draw different candidates
+    * @param search index of this search; parallel searches with different indices draw different candidates
     */
   def improved(problem: PlanProblem, plan: JointPlan, search: Int): JointPlan =
     val self = plan.turn

@@ -20,7 +20,7 @@ final case class Geofence(fence: Fence, marginM: Double = 0):
 
 /** The cost of coming near other vehicles.
   *
-  * @param minimum least distance, a hard limit, m
+  * @param minimum hard limit of the distance, m
   * @param margin width of the zone beyond the minimum in which coming nearer has a cost, m
   * @param growth growth of the margin with the time ahead, m/s; later predictions are less certain
   * @param price cost per second and per square metre of missing distance

@@ -78,7 +78,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     (worlds, shared) <- Seq("shared delays" -> true, "own delays" -> false)
   do
     test(
-      s"duels, $worlds, ${nameOf(timing)}, $plant: the engine says what the table does, and flies as the reference"
+      s"duels, $worlds, ${nameOf(timing)}, $plant: the engine is the one in docs/engines.md, and agrees with the scalar reference"
     ):
       val batch = PairBatch(duel, timing, model, threads = 1)
       val said  = table((worlds, nameOf(timing)))(plant)

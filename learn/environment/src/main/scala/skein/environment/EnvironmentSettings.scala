@@ -31,7 +31,7 @@ import skein.vehicle.SensorNoise
   * @param turnRateRadPerS maximum turn rate of a learner other than an evader
   * @param evaderRateRadPerS maximum turn rate of a learning evader; 0: its actions are immediate turns by up
   *   to half a turn
-  * @param climbMps greatest vertical speed of learners; 0: they keep the altitude of their start
+  * @param climbMps maximum vertical speed of learners; 0: they keep the altitude of their start
   * @param scenario the scenario whose vehicles learn
   * @param set settings of the scenario, by their keys
   * @param objective reward: a sum of the scenario's measures that are means over time, or one root mean

@@ -48,7 +48,7 @@ private[environment] final case class LearnerSide(
     if rate > 0 then (true, rate.toFloat) else (false, angle.toFloat)
 
   /** An environment's vehicles with its learners. Its scores are, for each learner that is [[apart]], the
-    * newest and the least distance to its nearest opponent, and then the costs.
+    * newest and the minimum distance to its nearest opponent, and then the costs.
     *
     * @param beside policy of the other vehicles of a learner's role; if None, their own
     */

@@ -16,17 +16,22 @@ private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
   @volatile private var isGivenUp    = false
   private var thread: Option[Thread] = None
 
-  /** Continues the computation. Nothing that it writes may be read until [[await]] has returned. */
-  def goOn(): Unit = thread match
-    case None    => thread = Some(Thread.ofVirtual.name("episode").start(() => run()))
-    case Some(_) => goesOn.release()
+  /** Continues the computation. Nothing that it writes may be read until [[await]] has returned.
+    *
+    * @throws Throwable if the computation threw it before
+    */
+  def goOn(): Unit =
+    failure.foreach(throw _)
+    thread match
+      case None    => thread = Some(Thread.ofVirtual.name("episode").start(() => run()))
+      case Some(_) => goesOn.release()
 
   /** Blocks until the computation is suspended or has ended.
     *
     * @throws Throwable if the computation threw it
     */
   def await(): Unit =
-    waits.acquireUninterruptibly()
+    if failure.isEmpty then waits.acquireUninterruptibly()
     failure.foreach(throw _)
 
   private def run(): Unit =

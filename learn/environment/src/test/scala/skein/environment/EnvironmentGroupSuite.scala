@@ -190,7 +190,11 @@ class EnvironmentGroupSuite extends munit.FunSuite, TemporaryFolders:
     def refused(settings: EnvironmentSettings) = LearnerSide.of(settings).swap.getOrElse("accepted")
     assert(clue(refused(surround.copy(scenario = "surrond"))).contains("the nearest is 'surround'"))
     assert(clue(refused(surround.copy(set = Map("x" -> "1")))).startsWith("set: no setting 'x'"))
-    assert(clue(refused(surround.copy(scenario = "crossing", learners = "all", objective = "arrived"))).contains("is a measure of whole flights"))
+    assert(clue(refused(surround.copy(
+      scenario = "crossing",
+      learners = "all",
+      objective = "arrived"
+    ))).contains("is a measure of whole flights"))
     assertEquals(
       refused(surround.copy(objective = "off-ring + 0.1*gap")),
       "objective: expected means over time, or one root mean square alone: rewards add up to these, " +

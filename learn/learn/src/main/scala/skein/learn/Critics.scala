@@ -3,7 +3,7 @@ package skein.learn
 import java.io.{DataInput, DataOutput}
 import skein.signal.SplitMix64
 
-/** The value of an action in a state, by one network or the least value of several. Copies of the networks
+/** The value of an action in a state, by one network or the minimum value of several. Copies of the networks
   * follow them slowly and give the target values.
   */
 private[learn] final class Critics(
@@ -73,7 +73,7 @@ private[learn] final class Critics(
       optimiser.step(network.parameters, gradient.sum())
       network.changed()
 
-  /** Gradient of the least value with respect to the actions. */
+  /** Gradient of the minimum value with respect to the actions. */
   def slopes(seen: Array[Float], chosen: Array[Float], into: Array[Float], from: Int, until: Int): Unit =
     feed(seen, chosen, from, until)
     for (pass, network) <- passes.zip(networks) do pass.forward(network, from, until)

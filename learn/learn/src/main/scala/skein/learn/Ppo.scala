@@ -67,6 +67,11 @@ final class Ppo(
     rollout.add(seen, chosen, logs, values, reachedValues, task)
     if rollout.isFull then lesson()
 
+  require(
+    settings.batch <= settings.horizon * environments,
+    s"expected batches of at most horizon × environments, ${settings.horizon * environments}, got ${settings.batch}"
+  )
+
   override def end(): Unit = if rollout.rows >= settings.batch then lesson()
 
   private def lesson(): Unit =

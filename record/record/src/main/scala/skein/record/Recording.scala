@@ -22,7 +22,9 @@ final case class Recording(
 
 object Recording:
 
-  /** Parameters recorded in flight count as parameters of the heading, as in a file. */
+  /** A recording of these records. Parameters recorded during the flight are added to the header's, as when a
+    * file is read.
+    */
   def apply(heading: RecordingHeader, records: Seq[Record]): Recording =
     Recording(
       heading.copy(parameters = heading.parameters ++ records.collect { case parameter: ParameterRow =>

@@ -52,10 +52,11 @@ object ViewServer:
   /** The default port of Foxglove's protocol. */
   val DefaultPort = 8765
 
-  /** @param port 0 for any that is free
-    * @param threads the threads that it runs on
-    * @param origins other sites whose pages may connect
-    * @return fails if it cannot listen
+  /** Starts the server; the future fails if the port cannot be bound.
+    *
+    * @param threads executor of the server
+    * @param port TCP port; 0 chooses a free one
+    * @param origins further web origins whose pages may connect
     */
   def start(
       shows: Shows,

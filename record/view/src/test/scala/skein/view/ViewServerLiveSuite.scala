@@ -182,7 +182,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
   serving(
     ViewerLimits(connections = 4),
     standing
-  ).test("silent connections, with half a request or one message, make room for active ones"): served =>
+  ).test("idle connections, also after half a request or one message, are closed to make room for new ones"): served =>
     import java.nio.charset.StandardCharsets.US_ASCII
     val port                      = served.server.port
     def ended(socket: Socket)     = Try(socket.getInputStream.readAllBytes()).isSuccess || true

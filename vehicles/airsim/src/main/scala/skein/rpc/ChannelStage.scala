@@ -96,6 +96,7 @@ private[rpc] final class ChannelStage(
     private def reject(call: Call, error: RpcError): Unit =
       counters.failed(error)
       observe(RpcEvent.Failed(call.method, channel, error))
+      call.ended = true
       end(call, Left(error))
 
     // Effects

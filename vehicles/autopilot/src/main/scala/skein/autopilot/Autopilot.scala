@@ -67,7 +67,7 @@ final case class Autopilot(
         acknowledged(Order(one.command, numbers.map(_.toDouble), None))
       case one: CommandInt =>
         val numbers = Vector(one.param1, one.param2, one.param3, one.param4).map(_.toDouble) ++
-          Vector(one.x * 1e-7, one.y * 1e-7, one.z.toDouble)
+          Vector(degrees(one.x), degrees(one.y), one.z.toDouble)
         acknowledged(Order(one.command, numbers, Some(one.frame)))
       case Timesync(0, theirs, _, _)       => Heard(this, Vector(Timesync(motion.sinceBoot.toNanos, theirs)))
       case ParamRequestList(_, _)          => Heard(this, parameters.all)
@@ -142,7 +142,9 @@ final case class Autopilot(
       yield entered
     case Command.ChangeSpeed =>
       val speed = order.numbers(1)
-      if speed > 0 && speed <= Parameters.Cruise.most then Right(Heard(copy(cruise = Some(speed))))
+      // In MAVLink's common messages, −1 changes nothing.
+      if speed == -1 then Right(Heard(this))
+      else if speed > 0 && speed <= Parameters.Cruise.most then Right(Heard(copy(cruise = Some(speed))))
       else Left(Refusal(Result.Denied, s"speed: expected up to ${Parameters.Cruise.most} m/s"))
     case Command.Reposition          => reposition(order, motion)
     case Command.GetHome             => Right(Heard(this, Vector(Telemetry.home(this))))
@@ -190,6 +192,9 @@ final case class Autopilot(
     news = if isArmed then Vector(text(Severity.Info, why)) else Vector.empty
   )
 
+  /** Degrees of a COMMAND_INT, whose largest integer stands for none. */
+  private def degrees(number: Int) = if number == Int.MaxValue then Double.NaN else number * 1e-7
+
   private def reposition(order: Order, motion: VehicleMotion): Either[Refusal, Heard] =
     val here = motion.state.positionNed
     // A command without a frame has PX4's: above the sea.
@@ -216,6 +221,7 @@ final case class Autopilot(
             heard.copy(next =
               heard.next.copy(
                 anchor = goal,
+                cruise = Some(order.numbers(0).min(Parameters.Cruise.most)).filter(_ > 0).orElse(cruise),
                 turn = if yaw.isFinite then OffboardSetpoint.Turn.Towards(yaw) else OffboardSetpoint.Turn.None
               )
             )
@@ -301,7 +307,10 @@ final case class Autopilot(
         else (copy(mission = mission.copy(reachedAt = Some(since))), Vector.empty)
       item.command match
         case ChangeSpeed =>
-          reached(copy(mission = mission.next, cruise = Some(item.param2.toDouble).filter(_ > 0)))
+          reached(copy(
+            mission = mission.next,
+            cruise = Some(item.param2.toDouble.min(Parameters.Cruise.most)).filter(_ > 0).orElse(cruise)
+          ))
         case Delay          => after(item.param1)
         case ReturnToLaunch =>
           reached(copy(mission = mission.next, mode = FlightMode.Return, enteredAt = now))

@@ -38,7 +38,7 @@ object Mission:
     val OutOfOrder       = 13
     val Cancelled        = 15
 
-  /** Greatest distance of an item from home, m: a mission beyond it belongs to another home. Far more than
+  /** Maximum distance of an item from home, m: a mission beyond it belongs to another home. Far more than
     * any mission needs, and less than the distance to another town.
     */
   val FarthestM = 20_000.0
@@ -57,6 +57,8 @@ object Mission:
       Some((Ack.Unsupported, Vector(s"mission item ${item.seq}: command ${item.command} unsupported")))
     else if isPlace && !frames(item.frame) then
       Some((Ack.UnsupportedFrame, Vector(s"mission item ${item.seq}: frame ${item.frame} unsupported")))
+    else if Set(Delay, LoiterTime)(item.command) && !item.param1.isFinite then
+      Some((Ack.Invalid, Vector(s"mission item ${item.seq}: its time is no number")))
     else if isPlace && !(item.z.isFinite && item.z.abs < 1e5) then
       Some((Ack.Invalid, Vector(s"mission item ${item.seq}: altitude is no number")))
     else if isPlace && !(item.x.abs <= 900_000_000 && item.y.abs <= 1_800_000_000) then

@@ -117,10 +117,10 @@ object OffboardSetpoint:
 
   private val IgnoreAttitude = 128
 
-  /** Greatest position coordinate, m, and greatest speed, m/s, that a setpoint may have. */
+  /** Maximum position coordinate, m, and maximum speed, m/s, that a setpoint may have. */
   private[autopilot] val Most = 1e5
 
-  /** Greatest turn rate that a setpoint may have. */
+  /** Maximum turn rate that a setpoint may have. */
   private val MostTurnRadPerS = 100.0
 
   private def moveOf(
@@ -157,7 +157,7 @@ object OffboardSetpoint:
 
   /** Converts a target to a setpoint of the flight controller.
     *
-    * @param cruise the greatest speed towards positions
+    * @param cruise the maximum speed towards positions
     */
   def setpoint(target: OffboardSetpoint, motion: VehicleMotion, cruise: MetresPerSecond): Setpoint =
     target match

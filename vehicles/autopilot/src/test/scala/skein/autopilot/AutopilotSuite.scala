@@ -166,6 +166,19 @@ class AutopilotSuite extends munit.FunSuite:
       (FlightMode.Hold, Vector("Mission finished, loitering"))
     )
 
+  test("a speed of −1 changes nothing, none is above the greatest, and a wait without end is refused"):
+    def flown(speed: Float) =
+      val items   = Vector(item(0, 178, 0, 0).copy(param2 = 3), item(1, 178, 0, 0).copy(param2 = speed))
+      val counted = inAir.told(MissionCount(1, 1, 2), at(6, flying = true)).next
+      val loaded  = items.foldLeft(counted)((before, item) => before.told(item, at(6, flying = true)).next)
+      val flying  = loaded.told(command(300), at(7, flying = true)).next
+      flying.flown(at(8, flying = true)).flown(at(8.1, flying = true)).cruise
+    assertEquals((flown(-1), flown(200)), (Some(3.0), Some(20.0)))
+    val counted = inAir.told(MissionCount(1, 1, 1), at(6, flying = true)).next
+    for command <- Seq(19, 93) do
+      val waits = counted.told(item(0, command, 0, 5).copy(param1 = Float.NaN), at(6, flying = true))
+      assertEquals(texts(waits.news), Vector("mission item 0: its time is no number"))
+
   test("a missing item is requested again ten times, and an item that cannot be flown is refused"):
     val counted    = inAir.told(MissionCount(1, 1, 2), at(6, flying = true)).next
     val (heard, _) = counted.steer(at(6.3, flying = true))

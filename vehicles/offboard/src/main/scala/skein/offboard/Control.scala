@@ -15,9 +15,9 @@ import skein.units.Decimals.fixed
   *   2 Hz
   * @param sampleEvery interval of motion samples that the vehicle is requested to send
   * @param timeout time-out of every answer
-  * @param farthestM the geofence: greatest horizontal distance from the flight's origin, m; a vehicle that
+  * @param farthestM the geofence: maximum horizontal distance from the flight's origin, m; a vehicle that
   *   leaves it holds its position and accepts no further actions
-  * @param highestM greatest height above the flight's origin, m
+  * @param highestM maximum height above the flight's origin, m
   * @param exchanges number of TIMESYNC exchanges after which a vehicle is ready; until then, one is sent
   *   every [[Control.Tick]]
   */

@@ -59,8 +59,11 @@ final class MavlinkLink private (
     val token   = tokens.getAndIncrement()
     val promise = Promise[Control.Answer]()
     waiting(token) = promise
+    if isClosed then end(Closed)
     change(number)(what(_, token, clock.now()))
     promise.future
+
+  @volatile private var isClosed = false
 
   private def change(number: Int)(step: Control => Control.Step): Unit =
     val answers = synchronized:
@@ -126,10 +129,12 @@ final class MavlinkLink private (
   def close(): Future[Done] =
     ticking.cancel()
     queue.complete()
-    end(VehicleError.Cancelled("the link was closed"))
+    isClosed = true
+    end(Closed)
     Future.successful(Done)
 
 object MavlinkLink:
+  private val Closed        = VehicleError.Cancelled("the link was closed")
   private val GroundStation = 245
   private val Component     = 190
   private val Beat          = Span.ofSeconds(0.5)

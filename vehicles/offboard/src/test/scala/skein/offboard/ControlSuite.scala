@@ -119,7 +119,7 @@ class ControlSuite extends munit.FunSuite:
       assert(step.messages.isEmpty && step.answers.exists(_._2.left.exists(_.isCertain)), step.toString)
 
   test(
-    "ArduPilot's copter is controlled in Guided, held in Brake, and takes off in Guided, by its mode numbers"
+    "ArduCopter is sent Guided (4) to take off and move, and Brake (17) to hover; in RTL it is left alone"
   ):
     def at100(mode: Long, armed: Boolean = true) =
       known().heard(heartbeat(mode, armed, autopilot = 3), at(50)).next

@@ -53,6 +53,8 @@ final class RosVehicle private[ros] (
         val answer = Promise[Either[VehicleError, Stamped[Kinematics]]]()
         waiting = waiting :+ answer
         val late = system.scheduler.scheduleOnce(Patience):
+          synchronized:
+            waiting = waiting.filterNot(_ eq answer)
           answer.trySuccess(Left(VehicleError.TimedOut(
             s"$name: expected odometry on $odometry within ${Patience.toMillis} ms, none arrived"
           ))): Unit

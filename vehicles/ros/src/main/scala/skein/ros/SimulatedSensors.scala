@@ -71,17 +71,22 @@ object SimulatedSensors:
   private[ros] object Carried:
     def of(world: WorldSettings): Vector[Carried] = SettingsSection
       .read(world.text): root =>
-        val vehicles = root.section("Vehicles")
+        val (vehicles, unless) = (root.section("Vehicles"), root.sections("DefaultSensors"))
         world.vehicles.map: vehicle =>
           val fields  = vehicles.section(vehicle.name)
           val cameras = fields.sections("Cameras").map(_._1)
-          val frames  = fields.sections("Sensors").toMap.view.mapValues(_.text("DataFrame", ""))
+          // As in the simulator, a vehicle's own lidars replace the default ones.
+          val own    = fields.sections("Sensors").filter((_, sensor) => isLidar(sensor))
+          val frames = (if own.isEmpty then unless else own).toMap.view.mapValues(_.text("DataFrame", ""))
           Carried(
             vehicle,
             if cameras.isEmpty then Vector(Usual) else cameras,
             lidars(vehicle)(name => frames.get(name).contains("SensorLocalFrame"))
           )
       .getOrElse(world.vehicles.map(each => Carried(each, Vector(Usual), lidars(each)(_ => false))))
+
+    private def isLidar(sensor: SettingsSection) =
+      sensor.number("SensorType", 0) == SensorKind.Lidar.number.toDouble
 
     private def lidars(vehicle: VehicleSettings)(isLocal: String => Boolean) =
       vehicle.sensors.collect { case (name, SensorKind.Lidar) => name }.toVector.sorted.map: name =>

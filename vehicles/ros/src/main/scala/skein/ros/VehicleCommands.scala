@@ -12,7 +12,7 @@ private[ros] object VehicleCommands:
   /** Duration of a velocity after its arrival, on the simulator's clock. */
   val VelocityLasts: Span = Span.ofSeconds(0.5)
 
-  /** Greatest speed of a vehicle's flight to a pose. */
+  /** Maximum speed of a vehicle's flight to a pose. */
   val Cruise: MetresPerSecond = MetresPerSecond(5)
 
   /** Flies with a velocity and turns at a rate. In the vehicle's frame, front and left are level and turn

@@ -107,7 +107,17 @@ class SensorMessagesSuite extends munit.FunSuite:
     assert(mistake("\"front\": {}", "front").isDefined)
     assert(mistake("\"front\": {}", "base_link").isDefined)
 
-  test("names become parts of topics"):
+  test("a lidar of DefaultSensors has its frame, unless the vehicle has lidars of its own"):
+    def local(own: String) =
+      val text = s"""{ "SettingsVersion": 1.2,
+        "DefaultSensors": { "spin": { "SensorType": 6, "Enabled": true, "DataFrame": "SensorLocalFrame" } },
+        "Vehicles": { "a": { "VehicleType": "SimpleFlight", "Sensors": { $own } } } }"""
+      val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
+      SimulatedSensors.Carried.of(world).head.lidars.map(lidar => (lidar.name, lidar.isLocal))
+    assertEquals(local(""), Vector(("spin", true)))
+    assertEquals(local("\"mine\": { \"SensorType\": 6, \"Enabled\": true }"), Vector(("mine", false)))
+
+  test("names are made valid in topics: other characters become _, which also precedes a leading digit"):
     assertEquals(
       Seq("front", "0", "a b-ü").map(SensorMessages.token),
       Seq("front", "_0", "a_b__")

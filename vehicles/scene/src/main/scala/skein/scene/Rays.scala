@@ -4,7 +4,7 @@ import skein.units.Vector3
 
 /** Casts rays from one point and returns the first item that each hits. Bodies are sorted into sectors around
   * the point, by a monotonic substitute for the azimuth that needs no arc tangent, and within each by their
-  * least distance; so a ray tests few of them.
+  * minimum distance; so a ray tests few of them.
   */
 final class Rays(moment: Moment, origin: Vector3, rangeM: Double, except: Int):
   import Rays.*

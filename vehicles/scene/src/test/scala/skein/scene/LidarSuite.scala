@@ -51,7 +51,7 @@ class LidarSuite extends munit.FunSuite:
       def point(xyz: Array[Float]) = Vector3(xyz(3 * i), xyz(3 * i + 1), xyz(3 * i + 2))
       assert((where.outside(point(own.xyz)) - point(world.xyz)).norm < 1e-3)
 
-  test("noise depends on its seed and its scan, and has the stated size"):
+  test("range noise has the configured standard deviation, and differs between scans"):
     val noisy                        = Lidar(noiseM = 0.05, seed = 3, sensorFrame = true)
     val exact                        = Lidar(sensorFrame = true)
     val place                        = Placement(Vector3(0, 0, -5))

@@ -22,12 +22,11 @@ final case class MavlinkSettings(
 final case class MavlinkPort(at: Address, tells: Option[Address] = None, systems: Vector[Int] = Vector.empty)
 
 object MavlinkSettings:
-  /** The ports of PX4's simulation (`px4-rc.mavlink`): a ground station reaches all vehicles at its port
-    * 14550, a program vehicle `i` at 14540 + i, both on this machine; and a peer that sends to 18570 reaches
-    * all, too.
+  /** The ports of PX4's simulation (`px4-rc.mavlink`). On this machine, a ground station that listens at 14550
+    * is connected to all vehicles, and a program that listens at 14540 + i to vehicle `i`. Any peer reaches all
+    * vehicles by sending to 18570.
     *
-    * @param instance the first vehicle's instance, as PX4 counts: it is added to `i`, to 18570 and to the
-    *   system numbers
+    * @param instance PX4 instance of the first vehicle; it is added to `i`, to 18570 and to the system IDs
     */
   def asPx4(vehicles: Int, host: String = "127.0.0.1", instance: Int = 0): MavlinkSettings = MavlinkSettings(
     udp =
@@ -38,7 +37,7 @@ object MavlinkSettings:
     firstSystem = instance + 1
   )
 
-  /** The greatest system number of a vehicle; the least is 1. */
+  /** The maximum system number of a vehicle; the least is 1. */
   val MostSystems = 250
 
   val GroundStation = 18570

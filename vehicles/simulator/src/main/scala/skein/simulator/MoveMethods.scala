@@ -100,7 +100,8 @@ private[simulator] object MoveMethods:
     many[(Float, Float, Float, Float, Int, YawMode, String)](method):
       case (simulation, (x, y, third, duration, drivetrain, yaw, name)) =>
         fly(simulation, name)(Move.hold(duration, ifNone): vehicle =>
-          Move.withYaw(goal(vehicle, x, y, third), Move.facing(drivetrain, yaw, Vector3(x, y, 0))))
+          val velocity = goal(vehicle, x, y, third)
+          Move.withYaw(velocity, Move.facing(drivetrain, yaw, Vector3(velocity.first, velocity.second, 0))))
 
   private def byAngles(method: String)(goal: (Double, Double, Double, Double) => Setpoint): ServerMethod =
     many[(Float, Float, Float, Float, Float, String)](method):

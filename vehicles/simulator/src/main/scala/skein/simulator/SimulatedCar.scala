@@ -137,7 +137,7 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
       CarControls(throttle, told.steering, if told.handbrake then 1 else told.brake)
 
 private[simulator] object SimulatedCar:
-  /** Greatest engine speed of AirSim's car (`CarPawn`). */
+  /** Maximum engine speed of AirSim's car (`CarPawn`). */
   val MostRpm = 5700.0
 
   /** Engine turns for each turn of the wheels, PhysX's final drive, and the wheel radius of a BMW 320i, m. */

@@ -34,7 +34,7 @@ private[simulator] object SimulatorMethods:
   /** Longest stepped advance, s: a day, far beyond use and far below what would overflow a clock. */
   private val LongestStepS = 86400.0
 
-  /** Greatest wind speed, m/s; beyond it physics' steps would be too long. */
+  /** Maximum wind speed, m/s; beyond it physics' steps would be too long. */
   private val FastestWindMps = 300.0
 
   private def steps(span: Span): CallOutcome = CallOutcome.Steps(span.max(Span.Zero))

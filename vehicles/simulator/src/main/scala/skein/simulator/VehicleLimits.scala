@@ -9,7 +9,7 @@ private[simulator] object VehicleLimits:
 
   val LongestName = 100
 
-  /** Greatest distance from the origin, m; beyond it numbers lose their precision. */
+  /** Maximum distance from the origin, m; beyond it numbers lose their precision. */
   val FarthestM = 1e6
 
   val Types: Vector[String] =

@@ -224,5 +224,5 @@ private[simulator] object VehicleMethods:
 
   private val Gravity = skein.vehicle.Airframe.Gravity
 
-  /** Greatest rotor speed of AirSim, 6396.667 turns a minute, in rad/s. */
+  /** Maximum rotor speed of AirSim, 6396.667 turns a minute, in rad/s. */
   private val MaxRotorSpeed = 6396.667 * 2 * math.Pi / 60

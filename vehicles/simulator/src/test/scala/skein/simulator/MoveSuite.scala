@@ -1,7 +1,7 @@
 package skein.simulator
 
 import skein.units.*
-import upack.{Bool, Float32, Int32, Str}
+import upack.{Bool, Float32, Int32, Obj, Str}
 
 class MoveSuite extends munit.FunSuite:
 
@@ -44,6 +44,26 @@ class MoveSuite extends munit.FunSuite:
     val bench = Bench().hovering(-20)
     assertEquals(bench.result(bench.velocityZ(5, 0, -20, 0)), Some(false))
     assertEquals(bench.result(bench.velocity(5, 0, 0, 0)), Some(true))
+
+  test("nose ahead, a velocity in the body's frame keeps the heading in which it began"):
+    val bench = Bench().hovering(-20)
+    val turn  = bench.call("rotateToYaw", Float32(90), Float32(20), Float32(1), Str("Evader"))
+    bench.pass(20)
+    assertEquals(bench.result(turn), Some(true))
+    val ahead = Obj(Str("is_rate") -> Bool(false), Str("yaw_or_rate") -> Float32(0))
+    bench.call(
+      "moveByVelocityBodyFrame",
+      Float32(5),
+      Float32(0),
+      Float32(0),
+      Float32(3),
+      Int32(1),
+      ahead,
+      Str("Evader")
+    )
+    bench.pass(2.9)
+    assertEqualsDouble(math.toDegrees(bench.kinematics().orientation.toQuaternion.yawRad), 90, 5)
+    assert(bench.position().y > 5, s"${bench.position()}")
 
   test("without API control a move answers true and does nothing"):
     val bench = Bench()

@@ -117,10 +117,10 @@ private[lanes] final class ScoreLanes private (
     * @param value the quantity's present value
     */
   private def successorsOf(number: Int, value: Node, kept: Int => Node): Vector[Node] =
-    val own                 = trace.param(ownParameter(number))
-    val time                = trace.param(Time)
-    def isPositive          = trace.lt(trace.const(0), value)
-    def never               = trace.const(Double.PositiveInfinity)
+    val own        = trace.param(ownParameter(number))
+    val time       = trace.param(Time)
+    def isPositive = trace.lt(trace.const(0), value)
+    def never      = trace.const(Double.PositiveInfinity)
     judged(number).reduction match
       case Reduction.Least => Vector(trace.binary(Op.Min, kept(0), value))
       case Reduction.Most  => Vector(trace.binary(Op.Max, kept(0), value))
@@ -248,13 +248,13 @@ private[lanes] object ScoreLanes:
   final case class Ending(place: Int, function: BoundFunction)
 
   private def initially(judged: Judged): Vector[Float] = judged.reduction match
-    case Reduction.Least | OfMoment.FirstWithin(_)            => Vector(Float.PositiveInfinity)
-    case Reduction.FirstPositive | Reduction.StaysPositive    => Vector(Float.PositiveInfinity)
-    case Reduction.Most                                       => Vector(Float.NegativeInfinity)
-    case Reduction.LeastAt                                    => Vector(Float.PositiveInfinity, Float.NaN)
-    case Reduction.MostAt                                     => Vector(Float.NegativeInfinity, Float.NaN)
-    case OfMoment.Newest                                      => Vector(Float.NaN)
-    case Reduction.Sd                                         => Vector(0, 0)
+    case Reduction.Least | OfMoment.FirstWithin(_)               => Vector(Float.PositiveInfinity)
+    case Reduction.FirstPositive | Reduction.StaysPositive       => Vector(Float.PositiveInfinity)
+    case Reduction.Most                                          => Vector(Float.NegativeInfinity)
+    case Reduction.LeastAt                                       => Vector(Float.PositiveInfinity, Float.NaN)
+    case Reduction.MostAt                                        => Vector(Float.NegativeInfinity, Float.NaN)
+    case OfMoment.Newest                                         => Vector(Float.NaN)
+    case Reduction.Sd                                            => Vector(0, 0)
     case Reduction.Mean | Reduction.Rms | Reduction.TimePositive => Vector(0)
 
   private type Scored = (Vector[Judged], Int, Option[OwnEnd])

@@ -141,7 +141,7 @@ private final class TimetableCompiler(
   private val decidedUpon =
     Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
 
-  /** Index of each view among those that are written, or −1. */
+  /** Index of each view in the timetable; −1 until the view is written. */
   private val told         = Array.fill(notes.views.size)(-1)
   private val propagations = Array.newBuilder[Propagation]
   private var placed       = 0

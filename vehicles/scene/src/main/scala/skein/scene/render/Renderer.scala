@@ -85,7 +85,7 @@ object Renderer:
     def channel(value: Double) = ((value + 1) * 127.5 + 0.5).toInt
     channel(face.nx) << 16 | channel(face.ny) << 8 | channel(-face.nz)
 
-  /** A square of ground below the camera, up to the greatest visible distance. For a camera on the ground it
+  /** A square of ground below the camera, up to the maximum visible distance. For a camera on the ground it
     * lies slightly lower: seen edge-on it would vanish, and the sky would begin at the camera.
     */
   private def ground(camera: Vector3, rgb: Int): Solid =
