@@ -1,5 +1,6 @@
 from dataclasses import dataclass
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -70,7 +71,9 @@ def test_a_recording_says_how_old_each_decision_was(flights):
 
 
 def test_equal_seeds_fly_equal_flights(flights, tmp_path):
+    skein.fly(link="none", duration_s=2, out=tmp_path)
     again = skein.fly(link="vpn", duration_s=15, seed=3, out=tmp_path)
+    assert [one.name for one in again.recordings] == [one.name for one in flights.recordings]
     with flights.load() as one, again.load() as other:
         pd.testing.assert_frame_equal(one["decision"], other["decision"])
 
@@ -126,14 +129,25 @@ def test_options_become_flags():
         *("--link", "vpn", "--link", "none"),
         "--as-paper",
     ]
+    assert arguments.flags({"link": (one for one in ("vpn", "none"))}) == ["--link", "vpn", "--link", "none"]
     assert arguments.flags({"period_ms": 50, "deadline_s": 0.5, "period": "50ms"}) == [
         *("--period", "50ms", "--deadline", "0.5s", "--period", "50ms"),
     ]
 
 
+def test_settings_are_named_and_written_as_skein_reads_them():
+    settings = {"ring_m": 6, "start-m": 2.5, "is_open": True, "is_shut": np.bool_(False)}
+    assert arguments.texts(settings) == {"ring-m": "6", "start-m": "2.5", "is-open": "true", "is-shut": "false"}
+    assert arguments.set_to({"ring_m": 6}) == ["ring-m=6"] and arguments.texts(None) == {}
+
+
 WRONG = [
     (dict(loop=[]), ValueError, "loop: expected one or more, got none"),
     (dict(link=[]), ValueError, "link: expected one or more, got none"),
+    (dict(link=iter(())), ValueError, "link: expected one or more, got none"),
+    (dict(settings=["ring_m"]), TypeError, "settings: expected names with values, such as .*, got \\['ring_m'\\]"),
+    (dict(seed=1.5), TypeError, "seed: expected a whole number from 0, got 1.5"),
+    (dict(seed=-1), ValueError, "seed: expected a whole number from 0, got -1"),
     (dict(duration_s="8s"), TypeError, "duration_s: expected a number of s, got '8s'"),
     (dict(deadline_ms="8"), TypeError, "deadline_ms: expected a number of ms, got '8'"),
     (dict(scenario=skein.Scenario), TypeError, "expected a scenario, such as Scenario\\(\\), got the class Scenario"),

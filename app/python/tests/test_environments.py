@@ -163,9 +163,15 @@ def test_wrong_settings_and_a_closed_environment_are_told(make):
         ({"capture_radius_m": -1}, "capture_radius_m: expected"),
         ({"render_mode": "human"}, "render_mode: expected"),
         ({"backend": "cloud"}, "backend: expected"),
+        ({"moves_in_flight": 2.9}, "moves_in_flight: expected a whole number, got 2.9"),
+        ({"scenario": "surround", "settings": {"ring": 6}}, "no setting 'ring'"),
     ]:
         with pytest.raises(ValueError, match=told):
             make(2, **settings)
+    with pytest.raises(TypeError, match=r"start_within_m: expected the least and the greatest distance, .* got 5"):
+        make(2, start_within_m=5)
+    with pytest.raises(TypeError, match="scenario: expected a name, such as 'surround', got Scenario"):
+        make(2, scenario=skein.Scenario())
     env = make(2)
     with pytest.raises(skein.SkeinError, match=r"expected reset\(\) before"):
         env.step(np.zeros((2, 1)))
@@ -229,6 +235,7 @@ def test_several_of_a_team_learn_in_one_world(backend):
         env.reset(seed=1)
         _, rewards, *_ = env.step(dict.fromkeys(env.agents, np.zeros(1, np.float32)))
         assert len(set(rewards.values())) == 1
+    team["settings"] |= {"ring_m": 6}
     with contextlib.closing(TeamParallelEnv(learners="Pursuer2,Evader", **team)) as env:
         assert env.possible_agents == ["evader", "pursuer2"]
         infos = env.reset(seed=1)[1]
@@ -333,6 +340,8 @@ def test_another_scenario_is_learned_in_by_one_of_its_pursuers():
             _, now, _, truncated, infos = env.step(np.zeros((3, 1), np.float32))
             rewards += now
         assert (rewards < -1).all() and (infos["distance_m"] > 5).all()
+    with contextlib.closing(gym.make("skein_uav/Pursuit-v0", scenario="surround", settings={"ring_m": 6})) as env:
+        env.reset(seed=1)
     with pytest.raises(ValueError, match="learners: expected one of leader, follower"):
         gym.make_vec("skein_uav/Pursuit-v0", num_envs=1, scenario="formation")
     with contextlib.closing(gym.make("skein_uav/Pursuit-v0", plant="quadrotor", altitude_m=3.0)) as env:
@@ -383,6 +392,17 @@ def test_both_sides_may_turn_by_a_rate():
     straight = seen("Evasion", 0.0)
     np.testing.assert_allclose(seen("Evasion", 1.0, turn_rate_rad_per_s=0.001), straight, atol=0.05)
     assert np.abs(seen("Evasion", 1.0) - straight).max() > 1
+
+    def turned(**settings):
+        from skein_uav.parallel import TeamParallelEnv
+
+        actions = {"evader": np.ones(1, np.float32), "pursuer": np.zeros(1, np.float32)}
+        with contextlib.closing(TeamParallelEnv(link="none", **settings)) as env:
+            env.reset(seed=1)
+            sines = [env.step(actions)[0]["evader"][5] for _ in range(20)]
+        return max(sines) - min(sines)
+
+    assert turned(turn_rate_rad_per_s=0.001) < 0.05 < turned(turn_rate_rad_per_s=1.0)
     with pytest.raises(ValueError, match="turn_rate_rad_per_s: expected"):
         gym.make("skein_uav/Pursuit-v0", turn_rate_rad_per_s=100.0)
 

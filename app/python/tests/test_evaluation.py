@@ -79,3 +79,10 @@ def test_what_a_policy_or_a_caller_gets_wrong_is_told():
         skein.evaluate(paper, episode_s=5.0)
     with pytest.raises(TypeError, match="takes no capture_radius_m"):
         skein.evaluate(paper, capture_radius_m=1.0)
+
+
+@pytest.mark.parametrize("given", [{"objective": "last10s"}, {"scenario": "surround"}, {"autoreset_mode": "NextStep"}])
+def test_what_would_score_something_else_is_refused(given):
+    (name,) = given
+    with pytest.raises(TypeError, match=f"distances in whole episodes of the duel; it takes no {name}"):
+        skein.evaluate(paper, link="none", draws=2, episode_s=1.0, last_s=1.0, **given)

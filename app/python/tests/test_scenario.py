@@ -47,7 +47,7 @@ def interpreted(text):
         **{"hypot": math.hypot, "min": min, "max": max, "lt": lambda a, b: a < b, "le": lambda a, b: a <= b},
         **{"eq": lambda a, b: a == b, "not": lambda a: not a, "and": lambda a, b: a and b, "or": lambda a, b: a or b},
         **{"where": lambda c, a, b: a if c else b, "always": lambda: True, "remainder": math.remainder},
-        **{"signum": lambda a: math.copysign(1, a) if a else a, "floor": math.floor, "tanh": math.tanh, "exp": math.exp},
+        **{"signum": lambda a: math.copysign(1, a) if a else a, "floor": math.floor, "rint": round, "tanh": math.tanh, "exp": math.exp},
     }
 
     def value(line, inputs):
@@ -133,6 +133,8 @@ def test_a_policy_runs_with_plain_numbers_as_it_stands():
     assert ring.Ring().gap(Moment([Known(), Known(north_m=1.0), Known(north_m=-1.0)])) == 180
     assert f.where(True, 1, 2) == 1 and f.clip(5, 0, 3) == 3 and f.minimum(3.0, 2.0, 1.0) == 1.0
     assert f.tanh(np.zeros(2)).tolist() == [0, 0] and f.pick(1, "abc") == "b"
+    with pytest.raises(AttributeError, match="'Known' object has no attribute 'hypot'"):
+        scenario(lambda seen: seen.own.hypot).text()
 
 
 def test_numpy_and_its_arrays_are_written_down_too():
@@ -212,10 +214,19 @@ WRONG = [
     ("x = np.maximum(0, np.array([seen.own.north_m, 1.0]))", "branches .* write maximum\\(a, b\\) of skein_uav.formula"),
     ("x = np.array([seen.own.north_m]); x = f.where(x > 0, x, 0.0)", "branches .* write maximum or minimum of"),
     ("x = np.sin(np.array([seen.own.north_m, 1.0]))", "NumPy has no sin for this array; write sin of skein_uav.formula"),
+    ("x = np.arctan2(np.array([1.0, seen.own.north_m]), 2.0)", "NumPy has no arctan2 for this array; write arctan2 of"),
+    ("x = np.rad2deg(np.array([seen.own.north_m]))", "NumPy has no rad2deg for this array; nor have formulas"),
     ("x = seen.own.north_m ** seen.own.east_m", "raises to a power; write a product, or sqrt, or exp"),
     ("x = (seen.own.north_m > 3) * 2.0", "computes with a condition; write where\\(condition, 1.0, 0.0\\)"),
     ("x = f.where(seen.own.north_m, 1, 2)", "takes a number for a condition; write a comparison"),
     ("x = f.sin('a') + f.hypot(seen.own.north_m, 'a')", "must be real number"),
+    ("x = f.atan2(seen.own.north_m)", "atan2.. takes 2 numbers, got 1"),
+    ("x = seen.own.north_m / (len(seen.vehicles) - 2)", "it divides by 0"),
+    ("x = 3.0 % seen.own.north_m // np.float64(0)", "it divides by 0"),
+    ("x = np.isnan(np.array([seen.own.north_m]))", "NumPy has no isnan for this array; nor have formulas"),
+    ("x = any(one.north_m > 3 for one in seen.vehicles)", "branches .* write logical_or or logical_and"),
+    ("x = f.where(seen.own.north_m > 3, 'a', 'b')", "where takes two of one kind, got str 'a' and str 'b'"),
+    ("return seen.along(0.0, 1.0, 3.0)", "the policy of Own: expected a yaw, such as Yaw.forward.., got float 3.0"),
     ("x, y = seen.own.north_m", "one number, not several"),
     ("return seen.own.north_m", "expected an action, such as seen.along\\(heading, speed\\), got Number"),
     ("return", "expected an action, .* got None; is a return missing\\?"),
@@ -230,7 +241,7 @@ def test_what_cannot_be_written_down_is_told_with_its_line_and_what_to_write(lin
     file.write_text(f"def policy(seen):\n    {line}\n    return seen.along(0.0, 1.0)\n")
     names = {"math": math, "np": np, "f": f}
     exec(compile(file.read_text(), str(file), "exec"), names)
-    expected = TypeError if "real number" in told else Untraceable
+    expected = TypeError if "real number" in told or "takes 2" in told else Untraceable
     with pytest.raises(expected, match=f"(?s){told}") as caught:
         scenario(names["policy"]).text()
     if expected is Untraceable:
@@ -265,6 +276,8 @@ SLIPS = [
     (lone(measures=lambda self: [gap(9).mean("gap")]), "reads vehicle 9 of a team of vehicles 0 to 0"),
     (lone(measures=lambda self: [Series("way", "rad", lambda now: now.vehicles[0].heading_rad).mean("way")]),
      "py:[0-9]+: the series way: expected positions, .* in a measure, got heading_rad"),
+    (lone(measures=lambda self: [gap(0).mean("a"), Series("gap", "m", lambda now: now.elapsed_s).mean("b")]),
+     "py:[0-9]+: the series gap: expected a name of its own for each series, got 'gap' twice"),
     (lone(vehicles=lambda self: None), "expected a list of Vehicle .*, got None; is a return missing"),
     (Scenario(), "expected a method vehicles.. of Scenario, got none"),
     (lone(3.0), "expected a function as the policy of Own, got float 3.0"),

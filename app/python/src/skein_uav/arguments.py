@@ -7,10 +7,12 @@ import os
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from numbers import Real
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from .errors import SkeinError
 from .scenario import Scenario
@@ -74,11 +76,17 @@ def renamed(function: str, options: Mapping[str, Any], **names: str) -> None:
             raise TypeError(f"{function}() takes {name}, not {option}")
 
 
-def some(**options: Any) -> None:
-    """Refuses empty lists, which a command would take for its default."""
-    for name, value in options.items():
-        if isinstance(value, (list, tuple, set)) and not value:
-            raise ValueError(f"{name}: expected one or more, got none")
+def some(name: str, value: Any) -> list[Any]:
+    """One or more values; a command would take none for its default."""
+    several = _several(value)
+    if not several:
+        raise ValueError(f"{name}: expected one or more, got none")
+    return several
+
+
+def _several(value: Any) -> list[Any]:
+    is_one = isinstance(value, (str, os.PathLike)) or not isinstance(value, Iterable)
+    return [value] if is_one else list(value)
 
 
 def flags(options: Mapping[str, Any]) -> list[str]:
@@ -86,8 +94,7 @@ def flags(options: Mapping[str, Any]) -> list[str]:
     words: list[str] = []
     for name, value in options.items():
         unit = re.search(r"_(ms|s)$", name)
-        several = value if isinstance(value, (list, tuple, set)) else [value]
-        for one in several:
+        for one in _several(value):
             if unit and isinstance(one, Real) and not isinstance(one, bool):
                 words += [_option(name[: unit.start()]), f"{float(one):.12g}{unit[1]}"]
             elif one is True:
@@ -118,17 +125,25 @@ def key(name: str) -> str:
     return name.replace("_", "-")
 
 
+def texts(settings: Mapping[str, Any] | None) -> dict[str, str]:
+    """Settings of a scenario as Skein names and reads them."""
+    if settings is not None and not isinstance(settings, Mapping):
+        raise TypeError(f"settings: expected names with values, such as {{'ring_m': 6}}, got {settings!r}")
+    return {
+        key(name): str(value).lower() if isinstance(value, (bool, np.bool_)) else str(value)
+        for name, value in (settings or {}).items()
+    }
+
+
 def set_to(settings: Mapping[str, Any] | None) -> list[str]:
     """The values of ``--set``."""
-
-    def text(value: Any) -> Any:
-        return str(value).lower() if isinstance(value, bool) else value
-
-    return [f"{key(name)}={text(value)}" for name, value in (settings or {}).items()]
+    return [f"{name}={value}" for name, value in texts(settings).items()]
 
 
 def varied(vary: Mapping[str, tuple[float, float]] | None) -> list[str]:
     """The values of ``--vary``."""
+    if vary is not None and not isinstance(vary, Mapping):
+        raise TypeError(f"vary: expected names with bounds, such as {{'ring_m': (4, 12)}}, got {vary!r}")
     words = []
     for name, bounds in (vary or {}).items():
         try:

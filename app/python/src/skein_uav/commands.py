@@ -98,19 +98,20 @@ def fly(
         If the command failed; with its error output.
     """
     arguments.renamed("fly", options, duration="duration_s", deadline="deadline_ms", set="settings")
-    arguments.some(loop=loop, link=link)
+    loop, link = arguments.some("loop", loop), arguments.some("link", link)
     with ExitStack() as served:
         folder = served.enter_context(arguments.folder(out))
         given = [(role, one) for role, one in (("pursuer", pursuer), ("evader", evader)) if one is not None]
         policies: list[Any] = [served.enter_context(PolicyServer(one, role)).option for role, one in given]
         if given and clock == "real" and deadline_ms is None:
             deadline_ms = _DEADLINE_MS
+        before = _times(folder)
         tables = run(
             "fly",
             loop=loop,
             link=link,
             duration=arguments.duration(duration_s, scenario),
-            seed=seed if seed < 0 else folded(seed),
+            seed=folded(seed),
             clock=clock,
             scenario=arguments.scenario_file(scenario, folder),
             set=arguments.set_to(settings),
@@ -121,7 +122,13 @@ def fly(
             verbose=verbose,
             **options,
         )
-    return Flights(tables, sorted(folder.glob("*.duckdb")), folder / "report.html")
+    made = [file for file, time in _times(folder).items() if before.get(file) != time]
+    return Flights(tables, made, folder / "report.html")
+
+
+def _times(folder: Path) -> dict[Path, int]:
+    """When each of a folder's recordings was written, ns."""
+    return {file: file.stat().st_mtime_ns for file in sorted(folder.glob("*.duckdb"))}
 
 
 @plainly
@@ -153,7 +160,7 @@ def spread(
         Mean and spread over the seeds, by title; units are in the columns' names.
     """
     arguments.renamed("spread", options, duration="duration_s", set="settings")
-    arguments.some(loop=loop, link=link)
+    loop, link = arguments.some("loop", loop), arguments.some("link", link)
     with tempfile.TemporaryDirectory(prefix="skein-") as folder:
         return run(
             "spread",

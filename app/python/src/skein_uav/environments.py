@@ -52,11 +52,13 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from . import arguments
 from .batch import CLIMBING, Backend, Flags, Floats, InProcess
 from .errors import SkeinError
 from .seeds import folded
 from .pictures import picture
 from .served import Served
+from .untraceable import shown
 
 _LARGEST_M = 1e5
 _LARGEST_MPS = 1e3
@@ -200,16 +202,14 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             "altitude_m": altitude_m,
             "episode_s": episode_s,
             "capture_radius_m": capture_radius_m,
-            "start_most_m": start_within_m[1],
-            "start_least_m": start_within_m[0],
+            **starts(start_within_m),
             "moves_in_flight": moves_in_flight,
             "scenario": scenario,
             "objective": objective,
+            "turn_rate_rad_per_s": turn_rate_rad_per_s,
             "climb_mps": climb_mps,
         }
-        texts |= {f"set.{name}": value for name, value in (settings or {}).items()}
-        if turn_rate_rad_per_s is not None:
-            texts |= {"turn_rate_rad_per_s": turn_rate_rad_per_s, "evader_rate_rad_per_s": turn_rate_rad_per_s}
+        texts |= {f"set.{name}": value for name, value in arguments.texts(settings).items()}
         self._backend = open_batch(texts, num_envs, self.autoreset_mode, backend)
         self._block = self._backend.block
         if len(self._backend.learners) > 1:
@@ -378,6 +378,13 @@ def open_batch(settings: dict[str, Any], count: int, autoreset: AutoresetMode, b
     altitude_m = settings.get("altitude_m")
     if altitude_m is not None and not altitude_m > 0:
         raise ValueError(f"altitude_m: expected more than 0 m, got {altitude_m!r}")
+    scenario = settings["scenario"]
+    if not isinstance(scenario, str):
+        raise TypeError(f"scenario: expected a name, such as 'surround', got {shown(scenario)}")
+    moves = settings.get("moves_in_flight")
+    if moves is not None and (not isinstance(moves, (int, np.integer)) or isinstance(moves, bool)):
+        raise ValueError(f"moves_in_flight: expected a whole number, got {moves!r}")
+    settings = {"evader_rate_rad_per_s": settings.get("turn_rate_rad_per_s"), **settings}
     texts = {name: str(value) for name, value in settings.items() if value is not None}
     climbs = (settings.get("climb_mps") or 0) > 0
     number = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP, AutoresetMode.DISABLED].index(autoreset)
@@ -386,6 +393,17 @@ def open_batch(settings: dict[str, Any], count: int, autoreset: AutoresetMode, b
     if backend == "socket" or backend.startswith("unix:"):
         return Served(texts, count, number, backend[5:] if backend.startswith("unix:") else None, climbs)
     raise ValueError(f"backend: expected 'process', 'socket' or 'unix:PATH', got {backend!r}")
+
+
+def starts(within_m: Any) -> dict[str, Any]:
+    """The settings of ``start_within_m``."""
+    try:
+        least_m, most_m = within_m
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"start_within_m: expected the least and the greatest distance, such as (5, 30), got {within_m!r}"
+        ) from None
+    return {"start_least_m": least_m, "start_most_m": most_m}
 
 
 def seeds_of(

@@ -57,8 +57,10 @@ def evaluate(
     seed : int
         Seed of the first draw; equal seeds give equal results.
     learner, period_ms, episode_s, **settings
-        As in `skein_uav.environments.PursuitVectorEnv`: ``link``, ``loop``, ``start_within_m``, ``backend``, … From the
-        paper's start, all episodes of one policy and one draw are identical, so set ``start_within_m`` there.
+        As in `skein_uav.environments.PursuitVectorEnv`: ``link``, ``loop``, ``start_within_m``, ``backend``, …, without
+        ``autoreset_mode`` and ``capture_radius_m``, and without ``scenario`` and ``objective``, for which there is
+        `search`. From the paper's start, all episodes of one policy and one draw are identical, so set
+        ``start_within_m`` there.
 
     Returns
     -------
@@ -70,12 +72,18 @@ def evaluate(
     ------
     ValueError
         If the policy returns anything but finite numbers of that shape, or a setting is invalid.
+    TypeError
+        If a setting would end episodes early or score something else.
     """
     needed("gymnasium", "learn")
     from .environments import PursuitVectorEnv
 
-    if "capture_radius_m" in settings or "autoreset_mode" in settings:
-        raise TypeError("evaluate() scores whole episodes; it takes no capture_radius_m and no autoreset_mode")
+    refused: list[str] = [name for name in ("capture_radius_m", "autoreset_mode", "objective") if name in settings]
+    if (scenario := settings.get("scenario", "duel")) != "duel":
+        refused.append(f"scenario {scenario!r}")
+    if refused:
+        named = " and no ".join(refused)
+        raise TypeError(f"evaluate() scores distances in whole episodes of the duel; it takes no {named}")
     if draws < 2:
         raise ValueError(f"draws: expected at least 2, got {draws}")
     if not 0 < last_s <= episode_s:

@@ -3,6 +3,8 @@
 A policy or a measure is an ordinary function. Called with floats, it computes with floats. A scenario (see
 `skein_uav.scenario`) calls it once with symbolic numbers and traces its computation, which every engine executes.
 
+A whole power is a product, so from the third on it may round otherwise than that of floats.
+
 Operators, NumPy's functions and those of this module take both: ``sin``, ``cos``, ``tan``, ``asin``, ``acos``, ``atan``,
 ``atan2``, ``hypot``, ``sqrt``, ``exp``, ``tanh``, ``floor``, ``ceil``, ``rint``, ``sign``, ``remainder``, ``wrap``,
 ``minimum``, ``maximum``, ``clip``, ``where``, ``logical_and``, ``logical_or``, ``logical_not``, ``pick`` and
@@ -11,21 +13,29 @@ Operators, NumPy's functions and those of this module take both: ``sin``, ``cos`
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from .symbols import FUNCTIONS, UFUNCS, Condition, Number, Symbol, operation
 from .untraceable import Untraceable as Untraceable
-from .untraceable import refused
+from .untraceable import refused, shown
+
+
+_OF_TWO = ("atan2", "hypot", "remainder", "min", "max")
 
 
 def _function(op: str, plain: Callable[..., Any], name: str, text: str) -> Any:
+    takes = 2 if op in _OF_TWO else 1
+
     def function(*args: Any) -> Any:
+        if len(args) != takes:
+            raise TypeError(f"{name}() takes {takes} number{'s' * (takes - 1)}, got {len(args)}")
         if any(isinstance(one, np.ndarray) and one.ndim > 0 for one in args):
             made = np.frompyfunc(function, len(args), 1)(*args)
             return made if any(isinstance(one, Symbol) for one in made.flat) else made.astype(float)
@@ -51,7 +61,7 @@ asin = _function("asin", math.asin, "asin", "Arc sine, rad.")
 acos = _function("acos", math.acos, "acos", "Arc cosine, rad.")
 atan = _function("atan", math.atan, "atan", "Arc tangent, rad.")
 atan2 = _function("atan2", math.atan2, "atan2", "Angle of the point (x, y), given y first, rad.")
-hypot = _function("hypot", math.hypot, "hypot", "Length of the vector (x, y).")
+_hypot = _function("hypot", math.hypot, "hypot", "Length of the vector (x, y).")
 sqrt = _function("sqrt", math.sqrt, "sqrt", "Square root.")
 exp = _function("exp", math.exp, "exp", "Power of e.")
 tanh = _function("tanh", math.tanh, "tanh", "Hyperbolic tangent.")
@@ -63,6 +73,11 @@ remainder = _function("remainder", math.remainder, "remainder", "x minus the nea
 _minimum = _function("min", min, "minimum", "The lesser of two numbers.")
 _maximum = _function("max", max, "maximum", "The greater of two numbers.")
 arctan2, arcsin, arccos, arctan = atan2, asin, acos, atan
+
+
+def hypot(x: Any, y: Any, *others: Any) -> Any:
+    """Length of the vector (x, y), or of one with more numbers."""
+    return functools.reduce(_hypot, others, _hypot(x, y))
 
 
 def tan(x: Any) -> Any:
@@ -116,7 +131,8 @@ def logical_not(a: Any) -> Any:
 def where(condition: Any, a: Any, b: Any) -> Any:
     """`a` where the condition holds, else `b`.
 
-    Both are computed. They may be numbers, conditions, actions, or dataclasses, tuples and lists of these, of one form.
+    Both are computed. They may be numbers, conditions, actions, or arrays, dataclasses, tuples and lists of these, of
+    one form.
     """
     if not isinstance(condition, Symbol):
         return a if condition else b
@@ -128,9 +144,13 @@ def where(condition: Any, a: Any, b: Any) -> Any:
         parts = {
             each.name: where(condition, getattr(a, each.name), getattr(b, each.name)) for each in dataclasses.fields(a)
         }
-        return dataclasses.replace(a, **parts)
+        return replaced(a, parts)
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        one, other = np.broadcast_arrays(np.asarray(a, dtype=object), np.asarray(b, dtype=object))
+        made = [where(condition, *both) for both in zip(one.flat, other.flat, strict=True)]
+        return np.array(made, dtype=object).reshape(one.shape)
     if isinstance(a, (tuple, list)) and type(a) is type(b) and len(a) == len(b):
-        return type(a)(where(condition, one, other) for one, other in zip(a, b, strict=True))
+        return like(a, (where(condition, one, other) for one, other in zip(a, b, strict=True)))
     if isinstance(a, Condition) or isinstance(b, Condition) or (isinstance(a, bool) and isinstance(b, bool)):
         return logical_or(logical_and(condition, a), logical_and(logical_not(condition), b))
     if a is b:
@@ -139,14 +159,28 @@ def where(condition: Any, a: Any, b: Any) -> Any:
         return a
     made = operation("where", condition, a, b)
     if made is NotImplemented:
-        raise refused(f"where takes two of one kind, got {type(a).__name__} and {type(b).__name__}")
+        raise refused(f"where takes two of one kind, got {shown(a)} and {shown(b)}")
     return made
 
 
+def replaced(of: Any, parts: Mapping[str, Any]) -> Any:
+    """A copy of a dataclass with other values, also of fields that it computes itself."""
+    made = copy.copy(of)
+    for name, part in parts.items():
+        object.__setattr__(made, name, part)
+    return made
+
+
+def like(of: Any, values: Iterable[Any]) -> Any:
+    """A tuple, a named tuple or a list, of the type of another."""
+    return getattr(type(of), "_make", type(of))(values)
+
+
 def pick(index: Any, values: Sequence[Any]) -> Any:
-    """The value at an index that may be known only in flight; beyond the last one, the last one."""
-    if not isinstance(index, Symbol):
-        return values[int(index)]
+    """The value at the nearest index from 0 to the last; halfway between two, at the greater one.
+
+    The index may be known only in flight, and need not be whole: at 0.7 and 1 it is the second value, at -1 the first.
+    """
     chosen = values[-1]
     for place in range(len(values) - 2, -1, -1):
         chosen = where(index < place + 0.5, values[place], chosen)
@@ -172,6 +206,9 @@ _OF_NUMPY: dict[str, Callable[..., Any]] = {
     "absolute": abs,
     "fabs": abs,
     "square": lambda a: a * a,
+    "floor_divide": lambda a, b: a // b,
+    "remainder": lambda a, b: a % b,
+    "divmod": divmod,
     "power": lambda a, b: a**b,
     "less": lambda a, b: operation("lt", a, b),
     "less_equal": lambda a, b: operation("le", a, b),
@@ -204,4 +241,11 @@ _OF_NUMPY: dict[str, Callable[..., Any]] = {
     "invert": logical_not,
 }
 UFUNCS.update(_OF_NUMPY)
-FUNCTIONS.update(where=where, clip=clip)
+
+
+def _clip_of_numpy(a: Any, a_min: Any = None, a_max: Any = None, *, min: Any = None, max: Any = None) -> Any:
+    least, most = a_min if min is None else min, a_max if max is None else max
+    return clip(a, -math.inf if least is None else least, math.inf if most is None else most)
+
+
+FUNCTIONS.update(where=where, clip=_clip_of_numpy)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .formula import like, replaced
 from .symbols import Condition, Number
 from .untraceable import Untraceable, shown
 
@@ -32,14 +33,14 @@ def filled(memory: Any, held: Iterator[Any]) -> Any:
     """A memory of this form with other values."""
     if dataclasses.is_dataclass(memory) and not isinstance(memory, type):
         parts = {each.name: filled(getattr(memory, each.name), held) for each in dataclasses.fields(memory)}
-        return dataclasses.replace(memory, **parts)
+        return replaced(memory, parts)
     if isinstance(memory, np.ndarray):
         made = np.empty(memory.shape, dtype=object)
         for place in np.ndindex(memory.shape):
             made[place] = next(held)
         return made
     if isinstance(memory, (tuple, list)):
-        return type(memory)(filled(each, held) for each in memory)
+        return like(memory, (filled(each, held) for each in memory))
     return next(held)
 
 

@@ -20,8 +20,9 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
+from . import arguments
 from .batch import Floats
-from .environments import action_space, observation_space, open_batch, seeds_of
+from .environments import action_space, observation_space, open_batch, seeds_of, starts
 from .errors import SkeinError
 from .pictures import picture
 
@@ -46,7 +47,7 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
         As in `skein_uav.environments.PursuitVectorEnv`.
     **others
         ``loop``, ``link``, ``period_ms``, ``plant``, ``sensors``, ``altitude_m``, ``episode_s``, ``capture_radius_m``,
-        ``start_within_m``, ``moves_in_flight``, ``climb_mps`` and ``objective``, as in `PursuitVectorEnv`.
+        ``start_within_m``, ``moves_in_flight``, ``turn_rate_rad_per_s``, ``climb_mps`` and ``objective``, as in `PursuitVectorEnv`.
     """
 
     metadata = {"name": "skein_uav_team_v0", "render_modes": ["rgb_array"], "render_fps": 10, "is_parallelizable": True}
@@ -63,9 +64,8 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
     ) -> None:
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: expected None or 'rgb_array', got {render_mode!r}")
-        within = others.pop("start_within_m", (0.0, 0.0))
-        texts = {"scenario": scenario, "learners": learners, "start_most_m": within[1], "start_least_m": within[0]}
-        texts |= {f"set.{name}": value for name, value in (settings or {}).items()}
+        texts = {"scenario": scenario, "learners": learners, **starts(others.pop("start_within_m", (0.0, 0.0)))}
+        texts |= {f"set.{name}": value for name, value in arguments.texts(settings).items()}
         self._backend = open_batch(texts | others, 1, AutoresetMode.DISABLED, backend)
         self._block = self._backend.block
         self.engine = self._backend.engine()
@@ -75,7 +75,7 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
         self.agents: list[str] = []
         self.render_mode = render_mode
         # By name, too, as PettingZoo's wrappers and skrl read them.
-        climbs = others.get("climb_mps", 0) > 0
+        climbs = (others.get("climb_mps") or 0) > 0
         self.observation_spaces = {agent: observation_space(climbs) for agent in self.possible_agents}
         self.action_spaces = {agent: action_space(climbs) for agent in self.possible_agents}
         self._random = np.random.default_rng()

@@ -1,8 +1,9 @@
 """Scenarios in Python: vehicles, their policies, and measures.
 
-A scenario is a dataclass. Its fields that are floats are settings, which ``settings={"ring-m": 6}`` and
-``vary={"ring-m": (4, 12)}`` change without Python; its other fields are fixed when it is traced. A vehicle's policy is
-a method or function; `skein_uav.formula` lists the functions that it may call.
+A scenario is a dataclass. Its parameters that are floats are settings, which ``settings={"ring-m": 6}`` and
+``vary={"ring-m": (4, 12)}`` change without Python; its other fields are fixed when it is traced. What its
+``__post_init__``, properties and methods compute from settings is traced. A vehicle's policy is a method or function;
+`skein_uav.formula` lists the functions that it may call.
 
 Examples
 --------
@@ -351,14 +352,18 @@ class Scenario:
     note = ""
     scene = "empty"
 
-    def __new__(cls, *_: Any, **__: Any) -> Any:
+    _given: tuple[tuple[Any, ...], dict[str, Any]]
+
+    def __new__(cls, *args: Any, **options: Any) -> Any:
         __tracebackhide__ = True
         for one in cls.__mro__[: cls.__mro__.index(Scenario)]:
             settings = _undeclared(one)
             if settings:
                 names = ", ".join(settings)
                 raise TypeError(f"{one.__name__} has settings ({names}): write @dataclass above the class")
-        return super().__new__(cls)
+        made = super().__new__(cls)
+        made.__dict__["_given"] = args, options
+        return made
 
     @property
     def title(self) -> str:
@@ -399,7 +404,7 @@ class Scenario:
 
         try:
             return Writer(self).file()
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, AttributeError) as error:
             if (better := explained(error)) is None:
                 raise
             raise better.with_traceback(error.__traceback__) from None

@@ -27,8 +27,13 @@ def folded(seed: SupportsIndex) -> int:
     ------
     ValueError
         If it is below 0.
+    TypeError
+        If it is no integer.
     """
-    rest = operator.index(seed)
+    try:
+        rest = operator.index(seed)
+    except TypeError:
+        raise TypeError(f"seed: expected a whole number from 0, got {seed!r}") from None
     if rest < 0:
         raise ValueError(f"seed: expected a whole number from 0, got {rest}")
     one = 0

@@ -79,7 +79,10 @@ class EnvironmentSimulator:
                 # A second flight would step the first one's world.
                 with busy:
                     while line := self.rfile.readline(_LONGEST_LINE):
-                        self.wfile.write(simulator._answer(line))
+                        try:
+                            self.wfile.write(simulator._answer(line))
+                        except OSError:  # the flight has ended
+                            return
 
         self._server = ThreadingUnixStreamServer(str(self.path), Flight)
         self._server.daemon_threads = True

@@ -60,6 +60,12 @@ class Symbol:
     def __bool__(self) -> bool:
         raise refused(BRANCH)
 
+    def __copy__(self) -> Any:
+        return self
+
+    def __deepcopy__(self, _: Any) -> Any:
+        return self
+
     def __hash__(self) -> int:
         raise refused("it looks something up by a number that is known in flight alone; write pick(index, values)")
 
@@ -80,6 +86,8 @@ class Symbol:
         raise refused("it is one number, not several; it cannot be taken apart")
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        # NumPy's numbers are such arrays in comparisons.
+        inputs = tuple(one.item() if isinstance(one, np.ndarray) and one.ndim == 0 else one for one in inputs)
         if method != "__call__" or any(isinstance(one, np.ndarray) for one in inputs):
             # Arrays of numbers: NumPy then applies operators and methods to each.
             inputs = tuple(_boxed(one) if isinstance(one, Symbol) else one for one in inputs)
@@ -160,21 +168,28 @@ class Number(Symbol):
         return operation("div", other, self)
 
     def __floordiv__(self, other: Any) -> Any:
-        return operation("floor", self / other)
+        return _quotient(self, other)
 
     def __rfloordiv__(self, other: Any) -> Any:
-        return operation("floor", other / self)
+        return _quotient(other, self)
 
     def __mod__(self, other: Any) -> Any:
-        return self - operation("floor", self / other) * other
+        return _modulo(self, other)
 
     def __rmod__(self, other: Any) -> Any:
-        return other - operation("floor", other / self) * self
+        return _modulo(other, self)
+
+    def __divmod__(self, other: Any) -> Any:
+        return self // other, self % other
+
+    def __rdivmod__(self, other: Any) -> Any:
+        return other // self, other % self
 
     def __pow__(self, power: Any) -> Any:
-        if isinstance(power, (int, float)) and power == 0.5:
+        is_known = isinstance(power, (int, float, np.integer))
+        if is_known and power == 0.5:
             return operation("sqrt", self)
-        if isinstance(power, (int, float)) and power == int(power) and 1 <= abs(power) <= 16:
+        if is_known and power == int(power) and 1 <= abs(power) <= 16:
             product = functools.reduce(lambda one, other: one * other, [self] * int(abs(power)))
             return product if power > 0 else 1.0 / product
         raise refused("it raises to a power; write a product, or sqrt, or exp")
@@ -262,6 +277,20 @@ class Number(Symbol):
         return operation("rint", self)
 
 
+def _modulo(x: Any, y: Any) -> Any:
+    """Python's x % y, exactly: x - y * floor(x / y) would round, so that 1.0 % 0.1 were 0."""
+    rest = operation("remainder", x, y)
+    if rest is NotImplemented:
+        return rest
+    return operation("where", rest * y < 0, rest + y, rest + 0.0)  # not -0.0
+
+
+def _quotient(x: Any, y: Any) -> Any:
+    """Python's x // y."""
+    modulo = _modulo(x, y)
+    return modulo if modulo is NotImplemented else operation("rint", (x - modulo) / y)
+
+
 def _negated(condition: Any) -> Any:
     return condition if condition is NotImplemented else operation("not", condition)
 
@@ -272,6 +301,8 @@ _CONDITIONS = ("lt", "le", "eq", "not", "and", "or", "always")
 def operation(op: str, *args: Any) -> Any:
     """An operation on numbers, at least one of which is symbolic."""
     first = next(one for one in args if isinstance(one, Symbol))
+    if op in ("div", "remainder") and isinstance(args[1], (int, float, np.number)) and args[1] == 0:
+        raise refused("it divides by 0")
     kind = Condition if op in ("not", "and", "or") else Number
     nodes, of = [], None
     for place, one in enumerate(args):

@@ -8,6 +8,8 @@ import sys
 import traceback
 from typing import Any
 
+import numpy as np
+
 from .errors import SkeinError
 from .places import is_users, place
 
@@ -32,10 +34,10 @@ def explained(error: Exception) -> Untraceable | None:
         return None
     if re.search(r"could not convert string to float: '<.*>'", str(error)):
         return _at(*frames[-1], f"{VALUE}; a text of it is no number: leave it a number")
-    lacking = re.search(r"has no callable (\w+) method", str(error))
-    if lacking is None:
+    lacking = re.search(_LACKING, str(error))
+    name = lacking[lacking.lastindex or 0] if lacking else ""
+    if not isinstance(getattr(np, name, None), np.ufunc):
         return None
-    name = lacking[1]
     instead = f"write {name} of skein_uav.formula, which takes arrays" if name in _KNOWN else "nor have formulas"
     return _at(*frames[-1], f"NumPy has no {name} for this array; {instead}")
 
@@ -81,6 +83,10 @@ def _better(reason: str, code: str) -> str:
     return reason
 
 
+_LACKING = (
+    r"has no callable (\w+) method|^'(?:float|int|bool|Number)' object has no attribute '(\w+)'"
+    r"|^ufunc '(\w+)' not supported"
+)
 _KNOWN = frozenset(
     "sin cos tan asin acos atan atan2 arcsin arccos arctan arctan2 hypot sqrt exp tanh floor ceil rint sign remainder "
     "minimum maximum clip where".split()
@@ -105,6 +111,7 @@ _BRANCHES = [
     (r"\bmin\(", "minimum(a, b)"),
     (r"\bmax\(", "maximum(a, b)"),
     (r"(?:\bsorted|\.sort|\.median)\(", "smallest(items, key), or minimum and maximum of neighbours"),
+    (r"\b(?:any|all)\(", "logical_or or logical_and of one after the other"),
     (r"\b(?:argmin|argmax)\(", "smallest(items, key)"),
     (r"\band\b", "logical_and(a, b), or a & b with each comparison in parentheses"),
     (r"\bor\b", "logical_or(a, b), or a | b with each comparison in parentheses"),

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-import copy
-import dataclasses
 import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from .actions import Action, Choice, cases
+from .actions import Action, Choice, Yaw, cases
 from .answers import answered
 from .formula import where
 from .lines import Lines, quoted
 from .memory import filled, form, leaves
 from .places import place_of
 from .scenario import Known, Limit, Measure, Moment, Observation, Scenario, Series, Vehicle
+from .settings import symbolic
 from .symbols import Condition, Graph, Number, constant
 from .untraceable import Untraceable, refused, shown
-
-
-def _key(name: str) -> str:
-    return name.lower().replace("_", "-")
 
 
 class Writer:
@@ -34,17 +29,7 @@ class Writer:
         if not re.fullmatch(r"[a-z][a-z0-9]*(-[a-z0-9]+)*", self.name):
             what = f"the name {scenario.name!r}" if scenario.name else f"the class {type(scenario).__name__}"
             raise ValueError(f"expected a name of Latin letters, such as name = 'my-patrol', got {what}")
-        self.settings: list[tuple[str, float, str]] = []
-        self.scenario = copy.copy(scenario)
-        for each in dataclasses.fields(scenario) if dataclasses.is_dataclass(scenario) else ():
-            value = getattr(scenario, each.name)
-            if isinstance(value, float) or (isinstance(value, int) and each.type in (float, "float")):
-                value = float(value)
-                if not math.isfinite(value):
-                    raise ValueError(f"{each.name}: expected a finite number, got {value}")
-                key = _key(each.name)
-                self.settings.append((key, value, each.metadata.get("meaning", "")))
-                object.__setattr__(self.scenario, each.name, self.graph.leaf("setting", key))
+        self.scenario, self.settings = symbolic(scenario, self.graph)
 
     def file(self) -> tuple[str, dict[int, str]]:
         """The text of the file, and the places in Python of its lines, by their numbers."""
@@ -187,6 +172,8 @@ class Writer:
             numbers = [
                 self.number(one, f"argument {place} of {action.kind}") for place, one in enumerate(action.numbers, 1)
             ]
+            if not isinstance(action.yaw, Yaw):
+                raise Untraceable(f"{self.lines.at}: expected a yaw, such as Yaw.forward(), got {shown(action.yaw)}")
             yaw: list[Any] = [] if action.yaw.kind == "still" else ["yaw", action.yaw.kind]
             if action.yaw.number is not None:
                 yaw.append(self.number(action.yaw.number, "a yaw"))
@@ -201,11 +188,8 @@ class Writer:
 
     def drawn(self, count: int) -> None:
         measures = self.listed("measures", Measure)
-        series: list[Series] = []
+        known: dict[str, tuple[Any, ...]] = {}
         for one in [*(each.of for each in measures), *self.listed("series", Series)]:
-            if one.name not in [each.name for each in series]:
-                series.append(one)
-        for one in series:
             self.lines.at = f"{place_of(one.of)}: the series {one.name}"
             value = self.number(one.of(self.moment(count, object())), "its value")
             unknown = self.graph.inputs(value.node) & {"heading", "age"}
@@ -214,6 +198,11 @@ class Writer:
                 raise Untraceable(
                     f"{self.lines.at}: expected positions, velocities and elapsed_s alone in a measure, got {name}"
                 )
+            is_new, same = one.name not in known, (value.node, one.unit)
+            if known.setdefault(one.name, same) != same:
+                raise ValueError(f"{self.lines.at}: expected a name of its own for each series, got {one.name!r} twice")
+            if not is_new:
+                continue
             bound = [] if one.bound is None else ["bound", quoted(one.bound[0]), self.fixed(one.bound[1], "a bound")]
             self.lines.add("series", quoted(one.name), quoted(one.unit), value, *bound)
             self.lines.at = place_of(self.scenario.measures)
