@@ -430,6 +430,6 @@ lazy val foreignEnvironment = project
 /** Ground robots with a simulator and a protocol of their own, driven by our loops. */
 lazy val ownVehicle = project
   .in(file("examples/own-vehicle"))
-  .dependsOn(cli)
+  .dependsOn(cli, testing % Test)
   .settings(publish / skip := true, underAgent, libraryDependencies ++= munit, testsCompute := true)
   .settings(Compile / run / mainClass := Some("rovers.driveRovers"))

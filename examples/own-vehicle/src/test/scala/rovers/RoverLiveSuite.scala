@@ -1,16 +1,16 @@
 package rovers
 
-import java.nio.file.Files
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
 import skein.flight.Replayed
 import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{DuckDbRecorder, RecordingReader}
+import skein.testing.TemporaryFolders
 import skein.units.*
 
 /** Drives over TCP on loopback, in real time, recorded on disk. */
-class RoverLiveSuite extends munit.FunSuite:
+class RoverLiveSuite extends munit.FunSuite, TemporaryFolders:
   import Program.scenarios
   private given system: ActorSystem = ActorSystem("rovers")
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
@@ -18,7 +18,7 @@ class RoverLiveSuite extends munit.FunSuite:
   for loop <- Seq(LoopKind.Stream, LoopKind.Plan) do
     test(s"${loop.label}: the robots drive over TCP, and all decisions are repeated from the recording"):
       import system.dispatcher
-      val file   = Files.createTempDirectory("rovers").resolve("live.duckdb")
+      val file   = temporaryFolder().resolve("live.duckdb")
       val landed = Chase.live(loop, Span.ofSeconds(4)): flight =>
         DuckDbRecorder.open(file, flight.heading).map(_.fold(error => fail(error.message), identity))
       assertEquals(Await.result(landed, 60.seconds).outcome, FlightOutcome.Completed)

@@ -17,6 +17,7 @@ import skein.report.Report
 import skein.scenario.{Scenario, Scenarios}
 import skein.settings.{ModelFile, PredictionModel, VehicleChoice}
 import skein.signal.{Kinematics, LatencyProfile}
+import skein.testing.TemporaryFolders
 import skein.units.*
 import skein.vehicle.{PlantModel, Setpoint, VehicleModel}
 import skein.vtime.VirtualTime
@@ -38,7 +39,7 @@ private final case class Laps(mps: Double = 2) extends Scenario:
       val policy        = LeadOnCircuit(circuit, mps, aheadM = 1)
       Agent(name, Role.Traveller, MetresPerSecond(mps), Vector3(north, east, 0), Radians(0), policy)
 
-class RoverSimulation extends munit.FunSuite:
+class RoverSimulation extends munit.FunSuite, TemporaryFolders:
   import Program.scenarios
   // Fits take seconds, and longer on a busy machine.
   override val munitTimeout = 2.minutes
@@ -68,7 +69,7 @@ class RoverSimulation extends munit.FunSuite:
       assertEquals(replayed(recorder).decidedAgain, None)
 
   private def fileOf(recorder: MemoryRecorder): Path =
-    val file = Files.createTempDirectory("rovers").resolve("drive.duckdb")
+    val file = temporaryFolder().resolve("drive.duckdb")
     assert(recorder.writeTo(file).isRight)
     file
 
@@ -146,7 +147,7 @@ class RoverSimulation extends munit.FunSuite:
     assertEquals(digest, digest)
 
   test("recordings become a report"):
-    val folder = Files.createTempDirectory("rovers")
+    val folder = temporaryFolder()
     val files  =
       for loop <- Seq[LoopKind | OwnLoop](LoopKind.Stream, turns) yield
         val file = folder.resolve(s"${loop.label}.duckdb")
@@ -159,7 +160,7 @@ class RoverSimulation extends munit.FunSuite:
 
   /** The output of `identify` for a minute's drive. */
   private def identified(seed: Long, link: LatencyProfile): Path =
-    val folder = Files.createTempDirectory("rovers")
+    val folder = temporaryFolder()
     val file   = folder.resolve("drive.duckdb")
     assert(Chase.virtual(LoopKind.Stream, Span.ofSeconds(60), seed, link).writeTo(file).isRight)
     assertEquals(Program.run(Seq("identify", file.toString, "--structure", "rover")), 0)

@@ -1,13 +1,15 @@
 package skein.cli
 
 import java.io.IOException
+import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.Path
 import java.security.MessageDigest
+import java.util.concurrent.ConcurrentHashMap
 import java.util.concurrent.atomic.AtomicReference
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.{ExecutionContext, Future}
 import skein.blocks.Ledger
-import skein.cluster.{CoordinatorNode, WorkerProcesses}
+import skein.cluster.{BuildId, ClusterProgress, CoordinatorNode, Endpoint, WorkerProcesses}
 import skein.report.TextTable
 import skein.search.{BlockExecutor, BlocksFailed}
 
@@ -22,28 +24,31 @@ private[cli] final class ClusterRun private (
 ) extends BlockExecutor:
   private val failure = AtomicReference(Option.empty[String])
 
+  /** Names of the workers of this machine whose processes have ended. */
+  private val gone = ConcurrentHashMap.newKeySet[String]()
+
   /** When the first answers were received, and their number: before, workers are starting. */
   private var begun = Option.empty[(atNanos: Long, accepted: Long)]
 
   private val processes = WorkerProcesses(
     options.workers,
-    WorkerProcesses.likeThis(
-      program,
-      Seq("worker", "--join", node.address.toString, "--attached", "--threads") :+
-        (threads / options.workers.max(1)).max(1).toString
-    ),
+    WorkerProcesses.likeThis(program, ClusterRun.words(options, node.address, threads)),
     number => folder.resolve(s"worker-$number.log"),
     ended(_),
     failed(_)
   )
 
   private def ended(worker: String): Boolean =
+    gone.add(worker): Unit
     node.ended(worker)
     node.progress.coordinator.workers.get(worker).exists(_.accepted > 0)
 
   private def failed(reason: String): Unit =
-    failure.set(Some(reason))
-    node.cancel()
+    if ClusterRun.isOtherHere(node.progress, gone.contains) then
+      Console.err.println(s"$reason; goes on with the other workers")
+    else
+      failure.set(Some(reason))
+      node.cancel()
 
   /** Starts workers only if the ledger lacks answers. */
   private def wanted(): Unit =
@@ -128,6 +133,26 @@ private[cli] final class ClusterRun private (
 private[cli] object ClusterRun:
   private val MostRows = 40
 
+  /** The command line of a worker of this machine. With certificates it listens where its own is valid: at
+    * the coordinator's host.
+    */
+  private[cli] def words(options: ClusterOptions.Checked, at: Endpoint, threads: Int): Seq[String] =
+    Seq("worker", "--join", at.toString, "--attached", "--threads") ++
+      Seq((threads / options.workers.max(1)).max(1).toString) ++
+      options.tls.toSeq.flatMap(tls =>
+        Seq("--tls", tls.keyStore.toAbsolutePath.getParent.toString, "--listen", at.copy(port = 0).toString)
+      )
+
+  /** Whether a worker is here that is not one of those that have ended: progress may lag behind. */
+  private[cli] def isOtherHere(progress: ClusterProgress, hasEnded: String => Boolean): Boolean =
+    progress.coordinator.workers.exists((name, worker) => worker.isHere && !hasEnded(name))
+
+  /** Identifies a question in its ledger: another build may answer it otherwise. */
+  private[cli] def ledgerName(question: ArraySeq[Byte], build: String): ArraySeq[Byte] =
+    val digest = MessageDigest.getInstance("SHA-256")
+    digest.update(s"$build\n".getBytes(UTF_8))
+    ArraySeq.unsafeWrapArray(digest.digest(question.toArray))
+
   /** Runs `body` with a coordinator and workers, and stops them afterwards.
     *
     * @param program the class whose `main` starts the commands
@@ -142,9 +167,8 @@ private[cli] object ClusterRun:
       threads: Int,
       shown: Shown
   )(body: ClusterRun => Either[String, A]): Either[String, A] =
-    val name = ArraySeq.unsafeWrapArray(MessageDigest.getInstance("SHA-256").digest(question.toArray))
     for
-      ledger <- Ledger.open(folder.resolve(Ledger.Name), name)
+      ledger <- Ledger.open(folder.resolve(Ledger.Name), ledgerName(question, BuildId.current))
       _ = if ledger.broken > 0 then
         shown.say(
           s"${folder.resolve(Ledger.Name)}: ${ledger.broken} bytes are no whole answers, since they were cut off " +

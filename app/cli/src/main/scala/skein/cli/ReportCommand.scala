@@ -30,7 +30,7 @@ final class ReportCommand(using Scenarios)
       read  <- Report.readOnce(files).left.map(_.map(_.message).mkString("\n"))
       set = read.flights
       out    <- OutFolder.made("--out", options.out.getOrElse(OutFolder.of(first)))
-      output <- Report.write(set, out)
+      output <- Report.write(set, out, files)
       shown = Shown(options.json.value)
       _     = read.twice.foreach(shown.say)
       _     = shown.tables(ReportSections.of(set), ReportSections.text(set))

@@ -5,8 +5,9 @@ import skein.plot.*
 import skein.record.ClockKind
 import skein.units.Decimals.signed
 
-/** Deviations from the paused flight by link and loop: discs are means, thick lines reach one standard
-  * deviation to either side, thin ones from the least to the most. Live flights have a ring around the disc.
+/** Deviations from the paused flight by scenario, link and loop: discs are means, thick lines reach one
+  * standard deviation to either side, thin ones from the least to the most. Live flights have a ring around
+  * the disc.
   */
 object DeviationFigure:
   val name = "deviation"
@@ -18,9 +19,10 @@ object DeviationFigure:
   private val letterWidth = 4.6
 
   def apply(deviations: Vector[Deviation]): Option[Drawing] = Option.when(deviations.nonEmpty):
-    val links  = deviations.map(_.link).distinct
-    val placed = links.zipWithIndex.flatMap: (link, index) =>
-      deviations.filter(_.link == link).map((_, index))
+    def place(one: Deviation) = (one.scenario, one.link)
+    val links                 = deviations.map(place).distinct
+    val placed                = links.zipWithIndex.flatMap: (link, index) =>
+      deviations.filter(place(_) == link).map((_, index))
     val slot  = (8 + deviations.map(_.name.length).max * letterWidth).max(62)
     val width = placed.size * slot + links.size * gap
     val panel = Panel(
@@ -38,14 +40,15 @@ object DeviationFigure:
     val marks = placed.zipWithIndex.flatMap:
       case ((deviation, link), index) =>
         mark(panel, deviation, panel.left + (index + 0.5) * slot + (link + 0.5) * gap)
-    val names = links.zipWithIndex.map: (link, index) =>
+    val names = links.zipWithIndex.flatMap: (link, index) =>
       val members = placed.zipWithIndex.collect { case ((_, `index`), place) => place }
       val middle  = panel.left + (members.sum.toDouble / members.size + 0.5) * slot + (index + 0.5) * gap
-      Mark.Text(Point(middle, panel.bottom + 38), FlightTheme.link(link), anchor = Anchor.Middle)
+      Vector(FlightTheme.link(link._2), link._1).zipWithIndex.filter(_._1.nonEmpty).map: (text, line) =>
+        Mark.Text(Point(middle, panel.bottom + 38 + 14 * line), text, anchor = Anchor.Middle)
     val truth   = panel.level(0, Stroke(FlightTheme.of("paused"), 1.2))
     val drawing = Drawing(
       width + 70,
-      height + 66,
+      height + 66 + (if deviations.exists(_.scenario.nonEmpty) then 14 else 0),
       panel.rules(panel.left, panel.right) ++ panel.yAxis ++ (truth +: (marks ++ names))
     )
     if deviations.exists(isLive) then Drawing.stacked(drawing, legend(panel.left)) else drawing

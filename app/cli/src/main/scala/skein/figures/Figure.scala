@@ -65,7 +65,7 @@ object Figure:
     */
   def ofScenario(flown: ScenarioFlights): Vector[Figure] =
     val name  = flown.scenario.name
-    val title = name.capitalize
+    val title = flown.name.capitalize
     val above = Figure(
       s"$name-trajectories",
       s"$title: trajectories",

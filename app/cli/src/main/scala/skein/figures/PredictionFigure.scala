@@ -70,7 +70,8 @@ object PredictionFigure:
           share.isHollow
         )
       yield mark
-    val title = panel.title(s"${group.name}, ${FlightTheme.link(group.link)}")
+    val words = Vector(group.name, FlightTheme.link(group.link), group.scenario).filter(_.nonEmpty)
+    val title = panel.fittedTitle(words.mkString(", "))
     Drawing(366, 262, (title +: panel.axes) ++ lines)
 
   /** Minimum number of points of a curve; fewer are drawn as discs. */

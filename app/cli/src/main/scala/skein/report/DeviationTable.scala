@@ -7,11 +7,13 @@ import skein.units.Decimals.{fixed, signed}
 object DeviationTable:
 
   def of(deviations: Vector[Deviation]): TextTable =
+    val isSeveral = deviations.exists(_.scenario.nonEmpty)
     TextTable(
-      Vector("<loop", "<link", "<clock", "flights", "mean %", "sd %", "least %", "most %"),
+      Option.when(isSeveral)("<scenario").toVector ++
+        Vector("<loop", "<link", "<clock", "flights", "mean %", "sd %", "least %", "most %"),
       deviations.map: one =>
         def percent(share: Double) = (100 * share).signed(1)
-        Vector(
+        Option.when(isSeveral)(one.scenario).toVector ++ Vector(
           one.name,
           one.link,
           one.clock,

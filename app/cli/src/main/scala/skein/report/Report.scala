@@ -26,8 +26,8 @@ object Report:
   def readOnce(files: Seq[Path])(using
       Scenarios
   ): Either[Seq[RecordError], (flights: FlightSet, twice: Vector[String])] =
-    val named          = files.groupBy(file => Try(file.toRealPath()).getOrElse(file))
-    val once           = files.distinctBy(file => Try(file.toRealPath()).getOrElse(file))
+    val named          = files.groupBy(real)
+    val once           = files.distinctBy(real)
     val (unread, read) =
       onAllCores(once)(file => RecordingReader.read(file).map(file -> _)).partitionMap(identity)
     val flown = read.distinctBy(_._2)
@@ -70,12 +70,16 @@ object Report:
   /** Writes `report.html`, and each figure as `figures/NAME.svg` and `figures/NAME.png`, into a folder, which
     * is created if necessary; files of these names are replaced.
     *
+    * @param files the flights' recordings; if empty, files with the flights' names
     * @return Left says why it could not be written
     */
-  def write(set: FlightSet, directory: Path)(using Scenarios): Either[String, Output] =
+  def write(set: FlightSet, directory: Path, files: Seq[Path] = Seq.empty)(using
+      Scenarios
+  ): Either[String, Output] =
     val figures  = ReportFigures.of(set)
     val sections = ReportSections.of(set, figures)
-    write(directory.resolve("report.html"), HtmlReport.render(set, sections), sections, figures.all, set.all)
+    val page     = directory.resolve("report.html")
+    write(page, HtmlReport.render(set, sections), sections, figures.all, shown(set.all, files))
 
   /** Writes `spread.html` and its figures in the manner of `write`. */
   def writeSpread(flights: Seq[FlightSummary], directory: Path)(using Scenarios): Either[String, Output] =
@@ -86,15 +90,26 @@ object Report:
       HtmlReport.spread(flights.size, sections),
       sections,
       figures.all,
-      flights
+      shown(flights, Seq.empty)
     )
+
+  /** Whether a file in the page's folder is a recording of these flights. */
+  private def shown(flights: Seq[FlightSummary], files: Seq[Path]): Path => Boolean =
+    if files.nonEmpty then
+      val read = files.map(real).toSet
+      file => read(real(file))
+    else
+      val names = flights.map(flight => FlightPlan.fileName(flight.flight.id)).toSet
+      file => names(file.getFileName.toString)
+
+  private def real(file: Path): Path = Try(file.toRealPath()).getOrElse(file)
 
   private def write(
       page: Path,
       text: String,
       sections: Vector[Section],
       figures: Vector[Figure],
-      flights: Seq[FlightSummary]
+      isShown: Path => Boolean
   ): Either[String, Output] =
     try
       val isReplaced = Files.exists(page)
@@ -109,18 +124,17 @@ object Report:
         page,
         unpainted.headOption,
         isReplaced,
-        others(page, flights.map(flight => FlightPlan.fileName(flight.flight.id)).toSet),
+        others(page, isShown),
         sections.flatMap(_.failure)
       ))
     catch case failed: IOException => Left(s"cannot write the report to $page: ${FileReason.of(failed)}")
 
-  private def others(page: Path, shown: Set[String]): Vector[String] =
+  private def others(page: Path, isShown: Path => Boolean): Vector[String] =
     Using.resource(Files.list(page.toAbsolutePath.getParent)): files =>
       files.iterator.asScala
-        .map(_.getFileName.toString)
-        .filter(_.endsWith(DuckDb))
-        .filterNot(shown)
-        .map(_.stripSuffix(DuckDb))
+        .filter(_.getFileName.toString.endsWith(DuckDb))
+        .filterNot(isShown)
+        .map(_.getFileName.toString.stripSuffix(DuckDb))
         .toVector
         .sorted
 

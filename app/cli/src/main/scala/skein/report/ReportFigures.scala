@@ -17,10 +17,21 @@ object ReportFigures:
     val (failures, own) =
       ScenarioReport.each(set)((report, flights) => report.figures(flights)).partitionMap(identity)
     ReportFigures(
-      own.flatten ++ Figure.ofDetections(set) ++ Figure.ofDecisions(set) ++
-        Figure.ofDeviations(set.deviations) ++ Figure.ofPredictions(set.predictions) ++ LoopPictures.of(set),
+      numbered(
+        own.flatten ++ Figure.ofDetections(set) ++ Figure.ofDecisions(set) ++
+          Figure.ofDeviations(set.deviations) ++ Figure.ofPredictions(set.predictions) ++ LoopPictures.of(set)
+      ),
       failures
     )
+
+  /** Figures with names of their own: each is a file. Of one name are those of a scenario with several
+    * settings.
+    */
+  private[report] def numbered(figures: Vector[Figure]): Vector[Figure] =
+    figures.foldLeft(Vector.empty[Figure]): (before, figure) =>
+      val taken = before.map(_.name).toSet
+      val names = Iterator(figure.name) ++ Iterator.from(2).map(number => s"${figure.name}-$number")
+      before :+ figure.copy(name = names.find(!taken(_)).get)
 
   /** Figures on the spread of repeated flights. */
   def spread(flights: Seq[FlightSummary]): ReportFigures =

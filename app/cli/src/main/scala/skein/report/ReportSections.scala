@@ -42,7 +42,7 @@ object ReportSections:
       SummaryTables.remarks(set),
       TimingVerdict.sentence(set).toVector
     ).filter(_.nonEmpty).map(_.mkString("\n"))
-    (Section.text(of(set)) +: said).mkString("\n\n")
+    (Section.text(of(set)) +: said.map(TextTable.printable)).mkString("\n\n")
 
   /** Sections on the spread of many flights of each loop over each link. */
   def spread(flights: Seq[FlightSummary], figures: ReportFigures = ReportFigures())(using

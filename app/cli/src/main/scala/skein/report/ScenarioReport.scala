@@ -19,12 +19,12 @@ trait ScenarioReport:
   def results(set: FlightSet): Vector[Section] = set.scenarios.flatMap: flown =>
     Vector(
       Section(
-        s"Results: ${flown.scenario.name}",
+        s"Results: ${flown.name}",
         ScenarioTables.note(flown.scenario),
         Some(ScenarioTables.flights(flown))
       ),
       Section(
-        s"Limits broken: ${flown.scenario.name}",
+        s"Limits broken: ${flown.name}",
         ScenarioTables.limits(flown.scenario),
         Some(ScenarioTables.violations(flown))
       )
@@ -32,7 +32,7 @@ trait ScenarioReport:
 
   /** Sections on the spread of many flights of each loop over each link. */
   def spread(flights: Vector[FlightSummary]): Vector[Section] = ScenarioFlights.of(flights).map(flown =>
-    Section(s"Spread: ${flown.scenario.name}", table = Some(ScenarioTables.spread(flown)))
+    Section(s"Spread: ${flown.name}", table = Some(ScenarioTables.spread(flown)))
   )
 
   def figures(set: FlightSet): Vector[Figure] =

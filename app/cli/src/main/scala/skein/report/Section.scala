@@ -22,7 +22,9 @@ object Section:
 
   /** All sections with a table, one after the other. */
   def text(sections: Seq[Section]): String =
-    sections.flatMap(section => section.table.map(textOf(section, _))).mkString("\n\n")
+    TextTable.printable(
+      sections.flatMap(section => section.table.map(textOf(section, _))).mkString("\n\n")
+    )
 
   private def textOf(section: Section, table: TextTable): String =
     (Vector(section.title, table.render) ++ Paragraph.lines(section.note, 100)).mkString("\n")

@@ -33,12 +33,13 @@ object SolverTable:
   private def spread(ms: Option[Distribution]): Vector[String] =
     ms.fold(Vector("", ""))(all => Vector(all.median.fixed(1), all.p99.fixed(1)))
 
-  /** The flight to compare with: its loop, link and policy are equal, and it decides in its own process. */
+  /** The flight to compare with: a comparable one that decides in its own process, equal in everything else.
+    */
   private def beside(set: FlightSet, flight: FlightSummary): Option[FlightSummary] =
-    set.flights.find: other =>
-      other.solver.isEmpty &&
-        other.flight.loop == flight.flight.loop && other.flight.link == flight.flight.link &&
-        other.policy == flight.policy && other.scenario == flight.scenario
+    def like(one: FlightSummary) =
+      import one.flight.{clock, duration, link, loop, period}
+      (loop, link, clock, period, duration, one.policy, one.scenario, one.predictor, one.movesInFlight)
+    set.all.find(other => other.solver.isEmpty && other.isComparable && like(other) == like(flight))
 
   private def difference(flight: FlightSummary, here: Option[FlightSummary]): String =
     flight.headline

@@ -139,7 +139,7 @@ object SummaryTables:
           twin.converged.fold(Vector("", ""))((live, virtual) => Vector(live.fixed(2), virtual.fixed(2))) ++
           Vector(
             twin.difference.fold("")(share => s"${(share * 100).signed(1)} %"),
-            twin.unlike.mkString("; ")
+            twin.unlike
           )
     )
 

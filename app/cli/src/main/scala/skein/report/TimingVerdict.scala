@@ -1,6 +1,6 @@
 package skein.report
 
-import skein.measure.{DistanceCurve, Distribution, FlightSet, FlightSummary}
+import skein.measure.{DistanceCurve, Distribution, FlightSet, FlightSummary, ScenarioNames}
 import skein.units.Decimals.fixed
 
 /** Whether the timing of flights is good enough, in one sentence, according to the criterion of the AirSim
@@ -17,15 +17,18 @@ object TimingVerdict:
 
   /** The sentence; None if only `paused` was run. */
   def sentence(set: FlightSet): Option[String] =
-    val flights = set.flights.filterNot(_.flight.isPaused)
-    val all     = flights
-      .groupBy(one => (one.name, one.flight.link))
+    val flights    = set.flights.filterNot(_.flight.isPaused)
+    val scenarioOf = ScenarioNames.among(flights)
+    val all        = flights
+      .groupBy(one => (one.name, one.flight.link, scenarioOf(one), one.flight.clock))
       .toVector
       .sortBy((_, same) => flights.indexOf(same.head))
-      .map { case ((name, link), same) => Judged(name, link, of(set, same)) }
+      .map { case ((name, link, scenario, _), same) =>
+        Judged(if scenario.isEmpty then name else s"$name in $scenario", link, of(set, same))
+      }
     Option.when(all.nonEmpty)(said(all))
 
-  /** The flights of one loop over one link, with the verdict if there is one. */
+  /** The flights of one loop over one link in one scenario, with the verdict if there is one. */
   private final case class Judged(name: String, link: String, verdict: Option[Verdict])
 
   /** @param share deviation as a fraction of the paused flight's value, or of the distance between vehicles
@@ -50,7 +53,8 @@ object TimingVerdict:
 
   /** Loops by their links: `futures and stream over direct and vpn`. */
   private def named(those: Vector[Judged]): String =
-    val loops = those.map(_.link).distinct.map(link => (link, those.filter(_.link == link).map(_.name)))
+    val loops =
+      those.map(_.link).distinct.map(link => (link, those.filter(_.link == link).map(_.name).distinct))
     loops.map(_._2).distinct.map(same =>
       s"${listed(same)} over ${listed(loops.collect { case (link, `same`) => link })}"
     ).mkString(", ")
@@ -59,7 +63,7 @@ object TimingVerdict:
     val first = words.dropRight(1)
     (Option.when(first.nonEmpty)(first.mkString(", ")) ++ words.lastOption).mkString(" and ")
 
-  /** @param same the flights of one loop over one link
+  /** @param same the flights of one loop over one link in one scenario
     * @return None if a flight has no result, the machine was too busy, or there are too few data
     */
   private def of(set: FlightSet, same: Vector[FlightSummary]): Option[Verdict] =

@@ -6,9 +6,9 @@ import skein.policy.{PolicyFamily, Role}
 import skein.report.Section
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
-import skein.testing.Unhurried
+import skein.testing.{TemporaryFolders, Unhurried}
 
-class BenchmarkSimulation extends munit.FunSuite, Unhurried:
+class BenchmarkSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = Scenarios.ours
 
   private val few = BenchmarkSet(
@@ -54,7 +54,7 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
 
   test("a user's policy is compared with the scenario's only in tasks with its role"):
     val file = Files.writeString(
-      Files.createTempDirectory("benchmark").resolve("mine.policy"),
+      temporaryFolder().resolve("mine.policy"),
       PolicyFile
         .ofDefaults(Role.Pursuer, PolicyFamily.leadPursuit).hocon("")
     )

@@ -1,6 +1,6 @@
 package skein.figures
 
-import skein.measure.{FlightSummary, ScenarioFlights}
+import skein.measure.{FlightSummary, ScenarioFlights, ScenarioNames}
 import skein.plot.{Drawing, Mark}
 import skein.policy.Agent
 import skein.report.SyntheticFlight
@@ -28,8 +28,15 @@ class ScenarioFigureSuite extends munit.FunSuite:
     ScenarioFlights(
       scenario,
       Vector(ScenarioFlights.Flown(summary, Result.of(scenario, tracks))),
-      withoutResult = Vector.empty
+      withoutResult = Vector.empty,
+      scenario.name
     )
+
+  test("scenarios of one name are told apart by the settings in which they differ"):
+    val (low, high) = (Capped(50), Capped(100))
+    val names       = ScenarioNames.of(Seq(low, high, low))
+    assertEquals(Seq(low, high).map(names(_)), Seq("capped, ceilingM 50.0", "capped, ceilingM 100.0"))
+    assertEquals(ScenarioNames.of(Seq(low))(low), "capped")
 
   private def texts(drawing: Drawing) = drawing.shapes.collect { case text: Mark.Text => text.content }
 

@@ -53,6 +53,13 @@ class NoResultSuite extends munit.FunSuite:
       val row  = ages.rows.find(_.head.startsWith("stream")).get
       assertEquals(row(ages.header.indexOf("true own")), "")
 
+  test("positions over a time that is not the flight's are no result"):
+    val truths =
+      for s <- Vector(0.0, 12.0, 1e9); vehicle <- stream.heading.vehicles
+      yield Truth(vehicle.name, Instant.Epoch + Span.ofSeconds(s), Vector3.Zero)
+    val set = Report.of(Seq(paused, stream.copy(truths = truths)))
+    assertEmpty(set, "stream, no result: clock broken", "advanced by 1000000000 s in a flight of 12 s")
+
   test("a paused flight whose clock runs back, leaps or stands still is not a reference"):
     for
       (clock, why) <- Seq[(Double => Double, String)](

@@ -114,6 +114,14 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     assertEqualsDouble(deviations.head.share.mean, metres("stream") / metres("paused") - 1, 1e-12)
     assertEquals(Deviation.of(flights.filterNot(_.flight.loop == "paused")), Vector.empty)
 
+  test("flights of different scenarios are neither averaged nor judged together"):
+    val others = flights.map(one => one.copy(flight = one.flight.copy(scenario = "other"), scenario = None))
+    val groups = PredictionGroup.of(flights ++ others)
+    assertEquals(groups.map(_.scenario), Vector("duel", "other"))
+    assertEquals(Deviation.of(flights ++ others).map(_.scenario).distinct, Vector("duel"))
+    val said = TimingVerdict.sentence(FlightSet(flights ++ others)).get
+    assert(clue(said).contains("stream in duel") && said.contains("stream in other"))
+
   test("the sections are in the text, on the report's page and on a spread's page"):
     val set  = FlightSet(flights)
     val text = ReportSections.text(set)

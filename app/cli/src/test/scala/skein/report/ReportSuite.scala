@@ -5,8 +5,8 @@ import javax.imageio.ImageIO
 import javax.xml.parsers.DocumentBuilderFactory
 import skein.figures.{Figure, TrajectoryFigure}
 import skein.measure.{FlightSet, FlightSummary}
-import skein.plot.Mark
-import skein.record.{MemoryRecorder, RecordError, Recording, Simulator}
+import skein.plot.{Drawing, Mark}
+import skein.record.{Event, EventKind, MemoryRecorder, RecordError, Recording, Simulator}
 import skein.scenario.{PaperDuel, ScenarioKind, Scenarios}
 import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.Decimals.fixed
@@ -63,9 +63,25 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val set  = Report.read(Seq(one)).fold(errors => fail(errors.mkString), identity)
     val told = Report.write(set, out).fold(fail(_), identity).told.last
     assert(clue(told).endsWith(s"c, which are there too: ./skein report '$folder/it'\\''s so'/*.duckdb"))
+    val beside = Report.write(set, folder, Seq(one)).fold(fail(_), identity)
+    assertEquals(beside.others, Vector("b"))
     assertEquals(Typed.recordings(Path.of("")), "*.duckdb")
     assertEquals(Typed.recordings(Path.of("a/b")), "a/b/*.duckdb")
     assertEquals(Typed.recordings(Path.of("-a/b")), "./-a/b/*.duckdb")
+
+  test("figures of one name have files of their own"):
+    val names = Seq("a-measure", "a-measure-2", "b", "a-measure", "a-measure-2")
+    val all   = names.map(Figure(_, "", "", Drawing(1, 1, Vector.empty))).toVector
+    assertEquals(
+      ReportFigures.numbered(all).map(_.name),
+      Vector("a-measure", "a-measure-2", "b", "a-measure-3", "a-measure-2-2")
+    )
+
+  test("what recordings say cannot control a terminal"):
+    val flown = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
+    val event = Event(flown.flight.startedAt, EventKind.Starved, None, "late\u001b[2J")
+    val text  = ReportSections.text(Report.of(Seq(flown.copy(events = Vector(event)))))
+    assert(clue(text).contains("late\ufffd[2J") && !text.contains("\u001b"))
 
   folder.test("a file that is listed twice is one flight"): folder =>
     val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)

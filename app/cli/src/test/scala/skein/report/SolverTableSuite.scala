@@ -38,3 +38,7 @@ class SolverTableSuite extends munit.FunSuite:
     assertEqualsDouble(cell("age at command p50").toDouble - cell("here").toDouble, 20, 5)
     assert(cell("difference").endsWith(" %"), row)
     assertEquals(set.flights.map(_.name), Vector("predictive", "predictive, solver"))
+    val other = set.flights.map(one =>
+      if one.solver.nonEmpty then one else one.copy(flight = one.flight.copy(period = Span.ofMillis(50)))
+    )
+    assertEquals(SolverTable.of(FlightSet(other)).rows.map(_.last), Vector(""))

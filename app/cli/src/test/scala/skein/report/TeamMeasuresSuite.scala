@@ -144,7 +144,9 @@ class TeamMeasuresSuite extends munit.FunSuite:
     val text = ReportSections.text(set)
     assert(text.contains("Results: surround") && text.contains("Distance between pursuer and evader"), text)
     val page = HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set)))
-    assert(page.contains("Results: surround") && page.contains("Surround: trajectories"))
+    assert(
+      page.contains("Results: surround, ringM 9.0") && page.contains("Surround, ringM 9.0: trajectories")
+    )
 
   test("tables of teams: a row per flight, and one per loop and link with the spread of its flights"):
     val scenario                                = Crossing(vehicles = 3, streams = 2, minimumM = 2)
@@ -195,9 +197,14 @@ class TeamMeasuresSuite extends munit.FunSuite:
   test("tables state that a flight is shorter than the measured window, and 'never' for missing events"):
     val scenario = Surround(vehicles = 3)
     // Both pursuers stand on one side of the evader.
-    val beside = (vehicle: Int, _: Double) => (10.0 * vehicle, 0.0)
-    val set    = Report.of(Seq(flown(scenario, 5)(beside), flown(scenario, 12)(beside))).scenarios.head
-    val each   = ScenarioTables.flights(set)
+    val beside        = (vehicle: Int, _: Double) => (10.0 * vehicle, 0.0)
+    val (short, long) = (flown(scenario, 5)(beside), flown(scenario, 12)(beside))
+    val ended         = short.copy(
+      heading = short.heading.copy(flight = short.flight.copy(duration = long.flight.duration)),
+      ending = Some(Ending(short.flight.startedAt, EndingKind.Completed, None))
+    )
+    val set                                    = Report.of(Seq(ended, long)).scenarios.head
+    val each                                   = ScenarioTables.flights(set)
     def column(table: TextTable, name: String) =
       table.rows.map(_(table.header.map(_.stripPrefix("<")).indexOf(name)))
     assertEquals(column(each, "ring m"), Vector("too short", "15.00"))

@@ -4,8 +4,14 @@ import skein.measure.{Deviation, Distribution}
 
 class VerdictSuite extends munit.FunSuite:
 
-  private def deviation(loop: String, link: String, share: Double, clock: String = "real") =
-    Deviation(loop, loop, link, clock, Distribution.of(Seq(share)).get)
+  private def deviation(
+      loop: String,
+      link: String,
+      share: Double,
+      clock: String = "real",
+      scenario: String = ""
+  ) =
+    Deviation(loop, loop, link, clock, Distribution.of(Seq(share)).get, scenario)
 
   test("each link's loops are listed from the largest deviation to the smallest, and the worst link last"):
     val said = Verdict.sentences(Seq(
@@ -51,6 +57,21 @@ class VerdictSuite extends munit.FunSuite:
     ))
     assertEquals(said.count(_.contains("in virtual time")), 1)
     assertEquals(said.size, 2)
+
+  test("each scenario has a sentence of its own"):
+    val said = Verdict.sentences(Seq(
+      deviation("stream", "vpn", 0.045, scenario = "formation"),
+      deviation("predictive", "vpn", 0.01, scenario = "formation"),
+      deviation("stream", "vpn", -0.03, scenario = "duel"),
+      deviation("predictive", "vpn", 0.02, scenario = "duel")
+    ))
+    assertEquals(
+      said,
+      Vector(
+        "Over vpn, duel, off the truth by: stream 3.0 %, predictive 2.0 %.",
+        "Over vpn, formation, off the truth by: stream 4.5 %, predictive 1.0 %."
+      )
+    )
 
   test("with a single loop, or without a paused flight, there is no sentence"):
     assertEquals(Verdict.sentences(Seq(deviation("stream", "vpn", 0.3))), Vector.empty)

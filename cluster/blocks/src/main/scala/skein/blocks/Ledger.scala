@@ -13,7 +13,8 @@ import scala.util.Using
   * requests no answered block again. If the process dies, a record is either complete, or removed at the next
   * start.
   *
-  * A damaged record is skipped, and its block computed again.
+  * A damaged record is skipped, and its block computed again: reading goes on at the next place where length
+  * and checksum agree.
   *
   * The file: 16 bytes of [[Ledger.Magic]], 32 bytes that identify the question, then records: length and
   * CRC-32 of what follows (4 bytes each, big-endian), the block's key (16 bytes), its answer. For one thread.
@@ -63,6 +64,9 @@ object Ledger:
   private val First    = Magic.length + Question
   private val Longest  = 16 << 20
 
+  /** Maximum number of bytes read and summed to find records behind damage: about a second of work. */
+  private val MostSought = 1L << 30
+
   /** Opens a question's ledger, or creates it.
     *
     * @param question 32 bytes that identify the question
@@ -87,7 +91,10 @@ object Ledger:
           Left(s"$file: expected a ledger of blocks, which begins with '${String(Magic, "US-ASCII")}'")
         else if !heading.drop(Magic.length).sameElements(question.toArray) then
           channel.close()
-          Left(s"$file: the ledger of another question; expected that of this one, or no file")
+          Left(
+            s"$file: the ledger of another question, or of another build of this program; expected that of " +
+              "this question and build, or no file"
+          )
         else
           val index = mutable.HashMap.empty[BlockKey, (Long, Int)]
           val found = scan(channel)((key, at, length) => { val _ = index.getOrElseUpdate(key, (at, length)) })
@@ -115,22 +122,24 @@ object Ledger:
     */
   private final case class Scanned(end: Long, broken: Long)
 
-  /** Passes every complete record to `tell`, in order; skips damaged ones. */
+  /** Passes every complete record to `tell`, in order; skips damaged ones. Searches behind damaged ones until
+    * [[MostSought]] bytes are read.
+    */
   private def scan(channel: FileChannel)(tell: (BlockKey, Long, Int) => Unit): Scanned =
-    val size  = channel.size
-    var at    = First.toLong
-    var end   = at
-    var whole = 0L
-    var next  = recordAt(channel, at, size)
-    while next.isDefined do
-      val (key, length) = next.get
-      val from          = at
-      at += Head + length
-      key.foreach: key =>
-        tell(key, from + Head + BlockKey.Bytes, length - BlockKey.Bytes)
-        end = at
-        whole += Head + length
-      next = recordAt(channel, at, size)
+    val size   = channel.size
+    val search = Search(channel, size)
+    var at     = First.toLong
+    var end    = at
+    var whole  = 0L
+    while at < size do
+      recordAt(channel, at, size) match
+        case Some((Some(key), length)) =>
+          tell(key, at + Head + BlockKey.Bytes, length - BlockKey.Bytes)
+          at += Head + length
+          end = at
+          whole += Head + length
+        case Some((None, length)) if isWhole(channel, at + Head + length, size) => at += Head + length
+        case _ => at = search.from(at + 1).getOrElse(size)
     Scanned(end, size - First - whole)
 
   /** Length of the record at this position, with its key unless the checksum differs. */
@@ -140,11 +149,45 @@ object Ledger:
       val head   = ByteBuffer.wrap(read(channel, at, Head))
       val length = head.getInt
       val crc    = head.getInt
-      if length < BlockKey.Bytes || length > Longest || size - at - Head < length then None
+      if !isLength(length, size - at - Head) then None
       else
         val content = read(channel, at + Head, length)
         val key     = ByteBuffer.wrap(content)
         Some((Option.when(crcOf(content) == crc)(BlockKey(key.getLong, key.getLong)), length))
+
+  private def isWhole(channel: FileChannel, at: Long, size: Long) =
+    recordAt(channel, at, size).exists(_._1.isDefined)
+
+  private def isLength(length: Int, left: Long) =
+    length >= BlockKey.Bytes && length <= Longest && length <= left
+
+  /** Searches for records behind damage. Almost every byte may begin a record, by its length alone, so the
+    * work has a limit for the whole file.
+    */
+  private final class Search(channel: FileChannel, size: Long):
+    private var left = MostSought
+
+    /** The first position from `at` on where length and checksum of a record agree. */
+    def from(at: Long): Option[Long] =
+      Iterator
+        .iterate(at)(_ + Longest)
+        .takeWhile(from => left > 0 && size - from >= Head + BlockKey.Bytes)
+        .flatMap: from =>
+          val bytes = ByteBuffer.wrap(read(channel, from, (size - from).min(2L * Longest + Head).toInt))
+          left -= bytes.capacity
+          (0 until Longest.min(bytes.capacity - Head - BlockKey.Bytes + 1)).iterator
+            .filter(begins(bytes, _))
+            .map(from + _)
+        .nextOption()
+
+    private def begins(bytes: ByteBuffer, at: Int): Boolean =
+      val length = bytes.getInt(at)
+      left > 0 && isLength(length, bytes.capacity.toLong - at - Head) && {
+        left -= length
+        val crc = CRC32()
+        crc.update(bytes.array, at + Head, length)
+        crc.getValue.toInt == bytes.getInt(at + 4)
+      }
 
   private def record(key: BlockKey, answer: ArraySeq[Byte]): ByteBuffer =
     val content = ByteBuffer.allocate(BlockKey.Bytes + answer.length)

@@ -83,8 +83,7 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
     val bytes  = Files.readAllBytes(path)
     val second = 48 + 24 + answer(0).length
     val record = 24 + answer(1).length
-    // The checksum, and the bytes it covers.
-    for at <- second + 4 until second + record do
+    for at <- second until second + record do
       val damaged = bytes.clone()
       damaged(at) = (damaged(at) ^ 0x10).toByte
       Files.write(path, damaged)

@@ -51,7 +51,7 @@ private[cluster] final class WorkerBehavior private (
         solvers = None
         held = Set.empty
         tell("received the question from the coordinator")
-        inPool(Prepared(welcome, prepared(question)))
+        inPool(prepared(question))((made, _) => Prepared(welcome, made))
       this
     case Prepared(of, made) if of == run =>
       made match
@@ -67,7 +67,7 @@ private[cluster] final class WorkerBehavior private (
         if begun == 0 then tell(s"computes its first block, ${self.age}")
         begun += 1
         held += number
-        inPool(solved(of, number, work, ready))
+        inPool(solved(work, ready))(Solved(of, number, _, _))
       this
     case Solved(of, number, answer, nanos) if of == run =>
       held -= number
@@ -97,36 +97,32 @@ private[cluster] final class WorkerBehavior private (
   private def summary =
     s"$blocks ${if blocks == 1 then "block" else "blocks"} computed in ${(busy * 1e-9).fixed(1)} s of its cores"
 
-  private def inPool(body: => Command): Unit =
+  /** Computes in the pool. Every failure is an answer, or the coordinator would wait for a block that is
+    * lost; a fatal one ends its thread as well.
+    */
+  private def inPool[A](compute: => Either[String, A])(message: (Either[String, A], Long) => Command): Unit =
     val me = context.self
-    pool.execute(() => me ! body)
+    pool.execute: () =>
+      val from                          = System.nanoTime()
+      def answer(of: Either[String, A]) = me ! message(of, System.nanoTime() - from)
+      try answer(compute)
+      catch
+        case _: InterruptedException => answer(Left("the worker ends"))
+        case failed: Throwable       =>
+          answer(Left(failed.toString))
+          if !NonFatal(failed) then throw failed
 
   private def prepared(question: ArraySeq[Byte]): Either[String, ArrayBlockingQueue[BlockSolver]] =
-    try
-      self.solvers.of(question).map: make =>
-        val ready = ArrayBlockingQueue[BlockSolver](self.cores)
-        for _ <- 0 until self.cores do ready.put(make())
-        ready
-    catch
-      case NonFatal(failed)        => Left(failed.toString)
-      case _: InterruptedException => Left("the worker ends")
+    self.solvers.of(question).map: make =>
+      val ready = ArrayBlockingQueue[BlockSolver](self.cores)
+      for _ <- 0 until self.cores do ready.put(make())
+      ready
 
-  private def solved(
-      of: Long,
-      number: Long,
-      work: ArraySeq[Byte],
-      ready: ArrayBlockingQueue[BlockSolver]
-  ): Solved =
+  private def solved(work: ArraySeq[Byte], ready: ArrayBlockingQueue[BlockSolver]) =
     // There are as many solvers as threads, so one is always free.
     val solver = ready.take()
-    val begun  = System.nanoTime()
-    val answer =
-      try Right(solver.solve(work))
-      catch
-        case NonFatal(failed)        => Left(failed.toString)
-        case _: InterruptedException => Left("the worker ends")
-      finally ready.put(solver)
-    Solved(of, number, answer, System.nanoTime() - begun)
+    try Right(solver.solve(work))
+    finally ready.put(solver)
 
 private[cluster] object WorkerBehavior:
   final case class Self(

@@ -109,6 +109,35 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     )
     assertEquals(begun.asScala.toVector, Vector[Byte](1, 2, 3))
 
+  test("a block whose computation overflows the stack is answered with the reason"):
+    val heard  = Heard[ToCoordinator]()
+    val solver = new BlockSolverFactory:
+      def of(asked: ArraySeq[Byte]) = Right(() => _ => throw StackOverflowError("too deep"))
+    val own    = Executors.newFixedThreadPool(1, silent(_))
+    val worker = system.spawnAnonymous(WorkerBehavior(
+      heard.actor,
+      WorkerBehavior.Self("anna", 1, "one", solver, System.nanoTime()),
+      own,
+      _ => (),
+      _ => ()
+    ))
+    worker ! WorkerBehavior.Member
+    worker ! Message.Welcome(7, question)
+    Iterator.continually(heard.next()).collectFirst { case ask: Message.Ask if ask.run == 7 => () }
+    for number <- 1L to 2L do
+      worker ! Message.Give(7, number, ArraySeq(1))
+      assertEquals(
+        Iterator.continually(heard.next()).collectFirst { case Message.Failed(7, _, at, why) => (at, why) },
+        Some((number, "java.lang.StackOverflowError: too deep"))
+      )
+    own.shutdownNow(): Unit
+
+  /** A thread that ends without a trace on the console. */
+  private def silent(body: Runnable): Thread =
+    val made = Thread(body)
+    made.setUncaughtExceptionHandler((_, _) => ())
+    made
+
   test("a worker that has computed blocks reports them once every ten beats"):
     val heard  = Heard[ToCoordinator]()
     val solver = new BlockSolverFactory:

@@ -51,5 +51,6 @@ object FlightSet:
         summary.policy.isDefined,
         summary.solver.isDefined
       )
-    val twins = Twin.among(ordered)
-    new FlightSet(ordered.diff(twins.flatMap(_.virtual)), twins)
+    val named = FlightNames.apart(ordered)
+    val twins = Twin.among(named)
+    new FlightSet(named.diff(twins.flatMap(_.virtual)), twins)

@@ -28,6 +28,9 @@ import skein.units.Decimals.fixed
   *   physics to the sending of the command
   * @param imageless its cameras without any of the requested images, each with the reason in a line
   * @param isInPacket whether its commands carried plans, to a buffer on the vehicle's side of the link
+  * @param predictor what predicted its vehicles, as recorded; absent if its loop predicts nothing
+  * @param movesInFlight maximum number of one vehicle's unanswered moves; absent if nothing limited them
+  * @param apart options in which it differs from flights of its name that are shown with it ([[FlightSet]])
   */
 final case class FlightSummary(
     flight: FlightRow,
@@ -51,7 +54,10 @@ final case class FlightSummary(
     noResult: Option[NoResult],
     starved: Option[String],
     imageless: Vector[String],
-    isInPacket: Boolean
+    isInPacket: Boolean,
+    predictor: Option[String],
+    movesInFlight: Option[Int],
+    apart: String = ""
 ):
 
   /** The distance between the first pursuer and the first evader, if all play against one opponent each;
@@ -72,11 +78,12 @@ final case class FlightSummary(
     yield Result.of(known, flown)
 
   /** The loop, the policy if it is not the paper's, whether a solver decided, and what prevents a comparison:
-    * that it has no result, was cut short or paused, or that the machine was too busy.
+    * that it has no result, was cut short or paused, or that the machine was too busy. With other flights
+    * also the options in which these differ.
     */
-  def name: String = flownAs + starved.filter(_ => noResult.isEmpty).fold("")(_ => ", starved")
+  def name: String = flownAs + apart + starved.filter(_ => noResult.isEmpty).fold("")(_ => ", starved")
 
-  /** The name without the remark on a busy machine. */
+  /** The name without differing options and the remark on a busy machine. */
   private[measure] def flownAs: String =
     val ended = noResult.map(none => s", no result: ${none.what}").orElse(cutShort.map(_ => ", cut short"))
     flight.loop + solver.fold("")(_ => ", solver") + policy.fold("")(policy => s", $policy") +
@@ -159,8 +166,14 @@ object FlightSummary:
       noResult,
       recording.events.find(_.kind == EventKind.Starved).map(_.detail),
       imageless(recording),
-      recording.heading.parameter("planInPacket").contains("true")
+      recording.heading.parameter("planInPacket").contains("true"),
+      Seq("predictor", "model").flatMap(recording.heading.parameter).headOption
+        .filter(_ => recording.flight.loopKind.forall(Predicting)),
+      recording.heading.parameter("movesInFlight").flatMap(_.toIntOption)
+        .filter(_ => !recording.flight.isPaused)
     )
+
+  private val Predicting = Set(LoopKind.Predictive, LoopKind.Plan)
 
   /** Its cameras without any of the images to be recorded, with the reasons. */
   private def imageless(recording: Recording): Vector[String] =

@@ -2,6 +2,8 @@ package skein.measure
 
 import skein.record.{EventKind, Recording}
 import skein.signal.TimeAxis
+import skein.units.Decimals.fixed
+import skein.units.Span
 
 /** Why a complete flight has no result: the basis of its measurement is invalid.
   *
@@ -22,8 +24,23 @@ object NoResult:
     Map(EventKind.ClockBroken -> "clock broken", EventKind.VehicleTaken -> "vehicle taken")
 
   private def clock(recording: Recording): Option[String] =
-    if recording.flight.isPaused then stepped(recording)
-    else TimeAxis.fault(recording.readings.iterator.map(one => (one.vehicle, one.state)))
+    val fault =
+      if recording.flight.isPaused then stepped(recording)
+      else TimeAxis.fault(recording.readings.iterator.map(one => (one.vehicle, one.state)))
+    fault.orElse(endless(recording))
+
+  /** Positions over a time that is not the flight's: a curve over it would need too much memory. */
+  private def endless(recording: Recording): Option[String] =
+    val times =
+      (recording.readings.iterator.map(_.state.validAt) ++ recording.truths.iterator.map(_.validAt))
+        .map(_.toNanos.toDouble * 1e-9)
+        .toVector
+    val most = Longest.max(recording.flight.duration * 2).toSeconds
+    Option.when(times.nonEmpty && times.max - times.min > most):
+      s"the simulator's clock advanced by ${(times.max - times.min).fixed(0)} s in a flight of " +
+        s"${recording.flight.duration.toSeconds.fixed(0)} s"
+
+  private val Longest = Span.ofSeconds(24 * 3600)
 
   /** The fault of a stepped simulator's clock. A vehicle is read once in a step, or more often while the
     * simulator stands still.

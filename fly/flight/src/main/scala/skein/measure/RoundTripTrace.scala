@@ -41,15 +41,26 @@ object RoundTripTrace:
     */
   def parse(text: String): Either[String, RoundTripTrace] =
     val lines = text.linesIterator.map(_.trim).zipWithIndex.map((line, i) => (line, i + 1)).toVector
-    if lines.exists((line, _) => line.contains("icmp_seq=")) then ofPing(lines.map(_._1)) else ofTable(lines)
+    if lines.exists((line, _) => line.contains("icmp_seq=")) then ofPing(lines) else ofTable(lines)
 
   private val answer  = """.*icmp_seq=(\d+) .*time[=<]([\d.]+) ?ms.*""".r
   private val summary = """(\d+) packets transmitted, .* time (\d+)ms.*""".r
 
-  private def ofPing(lines: Vector[String]): Either[String, RoundTripTrace] =
-    val trips = lines.collect { case answer(number, ms) => number.toInt -> ms.toDouble }.reverse.toMap
-    val total = lines.collectFirst { case summary(sent, lastsMs) => (sent.toInt, lastsMs.toDouble) }
+  private def ofPing(lines: Vector[(String, Int)]): Either[String, RoundTripTrace] =
     for
+      read <- Expect.each(lines.collect { case (answer(number, ms), line) => (number, ms, line) }):
+        (number, ms, line) =>
+          number.toIntOption.zip(ms.toDoubleOption.filter(_ <= MostMs)).toRight(
+            s"line $line: expected a number and milliseconds, got 'icmp_seq=$number' and 'time=$ms'"
+          )
+      totals <- Expect.each(lines.collectFirst { case (summary(sent, lastsMs), line) =>
+        (sent, lastsMs, line)
+      }): (sent, lastsMs, line) =>
+        sent.toIntOption.zip(lastsMs.toLongOption.map(_.toDouble)).toRight(
+          s"line $line: expected the number of packets and milliseconds, got '$sent' and '$lastsMs'"
+        )
+      total = totals.headOption
+      trips = unwrapped(read).reverse.toMap
       _ <- Expect.that(trips.nonEmpty)(
         "expected the answers of ping, such as 'icmp_seq=1 ttl=64 time=36.1 ms', got none"
       )
@@ -64,6 +75,16 @@ object RoundTripTrace:
       Vector.tabulate(last - first + 1)(_ * everyS),
       Vector.tabulate(last - first + 1)(i => trips.get(first + i))
     )
+
+  /** Numbers of requests beyond 16 bits, with which `ping` begins anew: each as near as possible to the one
+    * before.
+    */
+  private def unwrapped(read: Vector[(Int, Double)]): Vector[(Int, Double)] =
+    val numbers = read.map(_._1).scanLeft(read.headOption.fold(0)(_._1)): (before, number) =>
+      number + math.round((before - number).toDouble / Numbers).toInt * Numbers
+    numbers.drop(1).zip(read.map(_._2))
+
+  private val Numbers = 1 << 16
 
   private def ofTable(lines: Vector[(String, Int)]): Either[String, RoundTripTrace] =
     val rows = lines.filterNot((line, _) => line.isEmpty || line.startsWith("#") || line == "time_s,rtt_ms")

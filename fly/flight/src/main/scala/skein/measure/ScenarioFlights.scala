@@ -5,11 +5,13 @@ import skein.scenario.{Result, Scenario}
 /** Flights of one scenario with equal settings.
   *
   * @param withoutResult its flights without a result
+  * @param name its name, with settings if flights with others are shown ([[ScenarioNames]])
   */
 final case class ScenarioFlights(
     scenario: Scenario,
     flights: Vector[ScenarioFlights.Flown],
-    withoutResult: Vector[FlightSummary]
+    withoutResult: Vector[FlightSummary],
+    name: String
 ):
 
   /** The paused flight that figures show with the other flights. [[Truth]] decides with which flight each is
@@ -39,10 +41,13 @@ object ScenarioFlights:
   def of(flights: Vector[FlightSummary]): Vector[ScenarioFlights] =
     val flown = flights.flatMap(summary => summary.result.map(Flown(summary, _)))
     val none  = flights.filter(_.noResult.isDefined)
-    (flown.map(_.result.scenario) ++ none.flatMap(_.scenario)).distinct.map(scenario =>
+    val all   = (flown.map(_.result.scenario) ++ none.flatMap(_.scenario)).distinct
+    val names = ScenarioNames.of(all)
+    all.map(scenario =>
       ScenarioFlights(
         scenario,
         flown.filter(_.result.scenario == scenario),
-        none.filter(_.scenario.contains(scenario))
+        none.filter(_.scenario.contains(scenario)),
+        names(scenario)
       )
     )

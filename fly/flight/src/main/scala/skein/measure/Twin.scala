@@ -1,8 +1,7 @@
 package skein.measure
 
-import skein.units.Decimals.brief
-
-/** A live flight and its virtual twins: flights in virtual time of an equal loop over an equal link.
+/** A live flight and its virtual twins: flights in virtual time that are equal in everything but seed and
+  * simulator.
   *
   * @param virtual the twins, at least one; their samples are combined
   */
@@ -37,19 +36,11 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
       case Vector(seed) => s"seed $seed"
       case several      => s"${several.size} seeds, ${several.head} … ${several.last}"
 
-  /** Settings in which the twins differ from the live flight; empty for true twins. */
-  def unlike: Vector[String] =
-    def names[A](what: String, of: FlightSummary => A)(show: A => String) =
-      val theirs = virtual.map(of).distinct
-      Option.when(theirs != Vector(of(live)))(
-        s"$what ${show(of(live))} live, ${theirs.map(show).mkString(", ")} virtual"
-      )
-    Vector(
-      names("duration", _.flight.duration)(span => s"${span.toSeconds.brief} s"),
-      names("period", _.flight.period)(span => s"${span.toMillis.brief} ms"),
-      names("scenario", _.flight.scenario)(identity),
-      names("simulator", _.simulator)(identity)
-    ).flatten
+  /** The simulators, if the twins have another than the live flight; else empty. */
+  def unlike: String =
+    val theirs = virtual.map(_.simulator).distinct
+    if theirs == Vector(live.simulator) then ""
+    else s"simulator ${live.simulator} live, ${theirs.mkString(", ")} virtual"
 
 /** A quantity compared between a live flight and its twins, ms. */
 final case class Compared(role: String, quantity: String, live: Distribution, virtual: Distribution):
@@ -77,10 +68,13 @@ object Twin:
       role              <- twins.flatMap(_.live.roles).map(_.role).distinct.sorted
     yield (role, quantity, s"KS $short ${role.head}.")
 
-  /** Pairs every live flight with the virtual flights of its loop and link, if there are any. */
+  /** Pairs every live flight with its virtual twins, if there are any. */
   def among(flights: Vector[FlightSummary]): Vector[Twin] =
     val virtual = flights.filter(isVirtual).groupBy(key)
     flights.filterNot(isVirtual).flatMap(live => virtual.get(key(live)).map(Twin(live, _)))
 
   private def isVirtual(summary: FlightSummary) = summary.flight.isVirtual
-  private def key(summary: FlightSummary)       = (summary.flownAs, summary.flight.link)
+
+  private def key(one: FlightSummary) =
+    import one.flight.{duration, link, period, scenario}
+    (one.flownAs, link, period, duration, scenario, one.scenario, one.predictor, one.movesInFlight)

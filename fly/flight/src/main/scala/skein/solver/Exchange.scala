@@ -46,7 +46,7 @@ final case class Exchange private (
     * @param at time of receipt
     */
   def heard(answer: Answer, at: Instant): (Exchange, Verdict) =
-    val known = if answer.vehicle < vehicles.size then vehicles(answer.vehicle) else Vehicle.silent
+    val known = vehicles.lift(answer.vehicle).getOrElse(Vehicle.silent)
     known.open.get(answer.number) match
       case None if answer.number < known.next =>
         (copy(counts = counts.copy(repeated = counts.repeated + 1)), Verdict.Repeated)

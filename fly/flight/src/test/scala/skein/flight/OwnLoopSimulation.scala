@@ -1,6 +1,5 @@
 package skein.flight
 
-import java.nio.file.Files
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.*
@@ -12,12 +11,12 @@ import skein.port.{Sensor, VehicleError, VehiclePort}
 import skein.record.{ClockKind, MemoryRecorder}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
-import skein.testing.Unhurried
+import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** A user's own loop: a graph of public operators. */
-class OwnLoopSimulation extends munit.FunSuite, Unhurried:
+class OwnLoopSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   /** A loop like `stream` without pacing: decides on everything new. */
   private val eager = OwnLoop("eager", (team, stop) => OwnLoopSimulation.eager(team, stop))
@@ -63,7 +62,7 @@ class OwnLoopSimulation extends munit.FunSuite, Unhurried:
     assertEquals(Replay(PaperDuel().fleet, recording).firstDifference, None)
 
   test("a replay of an unknown loop's file repeats its decisions, but not its flight"):
-    val file = Files.createTempDirectory("own").resolve("eager.duckdb")
+    val file = temporaryFolder().resolve("eager.duckdb")
     assert(flown.recorder.writeTo(file).isRight)
     val replayed = Replayed.of(file)(using Scenarios.ours).fold(fail(_), identity)
     assertEquals((replayed.isSame, replayed.flownAgain), (true, None))

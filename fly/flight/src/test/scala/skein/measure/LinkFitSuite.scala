@@ -62,6 +62,15 @@ class LinkFitSuite extends munit.FunSuite:
     assertEquals(trace.roundTripsMs, Vector(Some(36.1), Some(40.2), None, Some(38.0), None, None))
     assertEqualsDouble(trace.sentAtS.last, 1, 1e-9)
 
+  test("ping's 16-bit numbers count on where they begin anew, and wrong ones are reported with their line"):
+    def line(number: String, ms: String) = s"64 bytes from h: icmp_seq=$number ttl=64 time=$ms ms"
+    val text  = Seq("65534", "0", "65535", "1", "3").map(number => line(number, s"$number.5")).mkString("\n")
+    val trips = RoundTripTrace.parse(text).fold(fail(_), identity).roundTripsMs.dropWhile(_.isEmpty)
+    assertEquals(trips, Vector(Some(65534.5), Some(65535.5), Some(0.5), Some(1.5), None, Some(3.5)))
+    for (number, ms) <- Seq("99999999999" -> "1", "1" -> "1.2.3", "1" -> "999999999999") do
+      val read = RoundTripTrace.parse(s"${line("1", "36")}\n${line(number, ms)}")
+      assert(clue(read).left.exists(_.startsWith("line 2: expected a number and milliseconds")))
+
   test("a table is read, and a mistake in it is reported with its line"):
     assertEquals(
       RoundTripTrace.parse("time_s,rtt_ms\n0.0,36.2\n0.1,\n0.2,40\n"),

@@ -29,7 +29,8 @@ class ExchangeSuite extends munit.FunSuite:
     assertEquals(asking(0).heard(answer(0), at(100))._2, Verdict.Late(Span.ofMillis(100)))
     assertEquals(heard.heard(answer(1), at(31))._2, Verdict.Foreign)
     assertEquals(heard.heard(answer(0, vehicle = 1), at(31))._2, Verdict.Foreign)
-    assertEquals(heard.heard(answer(0, vehicle = 999), at(31))._2, Verdict.Foreign)
+    for vehicle <- Seq(999, -1) do
+      assertEquals(heard.heard(answer(0, vehicle = vehicle), at(31))._2, Verdict.Foreign)
 
   test("a delayed answer is not used after a newer request"):
     val exchange      = asking(0, 50)

@@ -6,6 +6,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import scala.concurrent.duration.*
+import scala.util.Using
 import skein.airsim.*
 import skein.flight.{AirSimFleet, CameraSensor, Equipped, VirtualFlights}
 import skein.link.*
@@ -34,7 +35,8 @@ object TortureFlight:
     val file   = folder.resolve("flight.duckdb")
     try memory.writeTo(file).flatMap(_ => RecordingReader.read(file))
     finally
-      Files.deleteIfExists(file): Unit
+      // A write that fails may leave other files.
+      Using.resource(Files.list(folder))(_.forEach(Files.delete(_)))
       Files.delete(folder)
 
   /** Suppresses warnings: broken connections are expected here. */

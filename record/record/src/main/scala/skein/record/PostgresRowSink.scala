@@ -12,25 +12,31 @@ import scala.util.control.NonFatal
 
 /** Writes a flight into a Postgres database in addition to its recording: equal tables and columns, in a
   * schema named after the flight. A thread of its own writes; if the database is slower than the flight, rows
-  * beyond [[PostgresRowSink.Capacity]] are dropped; their number is reported at the end.
+  * beyond [[PostgresRowSink.Capacity]] are dropped; their number is reported at the end, and that of rows
+  * that a lost connection did not take.
   */
 final class PostgresRowSink private (connection: Connection, schema: String, target: PostgresAddress)
     extends RowSink:
   import PostgresRowSink.*
 
   private val queue            = ArrayBlockingQueue[(Long, Record)](Capacity)
-  private val lost             = AtomicLong()
+  private val dropped          = AtomicLong()
+  private val refused          = AtomicLong()
   private val waitingBytes     = AtomicLong()
   private val inserts          = scala.collection.mutable.Map.empty[String, PreparedStatement]
   @volatile private var ended  = false
   @volatile private var failed = Option.empty[String]
 
+  /** Number of rows that are taken from the queue and not yet committed. */
+  @volatile private var writing = 0
+
   private val writer = Thread.ofPlatform().daemon().name("skein-postgres").start(() => writeAll())
 
   def put(rows: Seq[(Long, Record)]): Unit = rows.foreach: row =>
     val size = Record.blobOf(row._2).fold(0)(_.size)
-    if failed.isDefined || waitingBytes.get + size > MostWaitingBytes || !queue.offer(row) then
-      lost.incrementAndGet(): Unit
+    if failed.isDefined then refused.incrementAndGet(): Unit
+    else if waitingBytes.get + size > MostWaitingBytes || !queue.offer(row) then
+      dropped.incrementAndGet(): Unit
     else waitingBytes.addAndGet(size): Unit
 
   def close(): Unit =
@@ -49,8 +55,10 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
       .foreach(why => failed = failed.orElse(Some(why)))
 
   def failure: Option[String] =
+    val unsent  = refused.get + queue.size + writing
     val reasons =
-      failed ++ Option.when(lost.get > 0)(s"${lost.get} rows are missing, since it is slower than the flight")
+      failed.map(why => if unsent == 0 then why else s"$why; $unsent rows are missing from there on") ++
+        Option.when(dropped.get > 0)(s"${dropped.get} rows are missing, since it is slower than the flight")
     Option.when(reasons.nonEmpty)(s"Postgres, schema $schema: ${reasons.mkString("; ")}")
 
   private def writeAll(): Unit =
@@ -61,8 +69,9 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
           if first != null then
             val batch = java.util.ArrayList[(Long, Record)](BatchSize)
             batch.add(first): Unit
-            queue.drainTo(batch, BatchSize - 1): Unit
+            writing = 1 + queue.drainTo(batch, BatchSize - 1)
             write(batch.asScala.toVector)
+            writing = 0
             batch.forEach(row => Record.blobOf(row._2).foreach(blob => waitingBytes.addAndGet(-blob.size)))
     catch case NonFatal(error) => failed = Some(s"${error.getMessage}".linesIterator.next())
 

@@ -88,6 +88,18 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurri
     val said = sink.failure.getOrElse(fail("nothing was lost"))
     assert("""(\d+) rows are missing""".r.findFirstMatchIn(said).exists(_.group(1).toInt >= 8000), said)
 
+  test("rows that a lost connection did not take are counted, and not put down to the database's speed"):
+    val sink = opened(heading("broken-off"))
+    Using.resource(server.get.getPostgresDatabase.getConnection()): other =>
+      other.createStatement().execute(
+        "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE pid <> pg_backend_pid()"
+      ): Unit
+    for number <- 1L to 3000L do sink.put(Seq((number, Samples.reading(number))))
+    sink.close()
+    val said = sink.failure.getOrElse(fail("nothing was lost"))
+    assert(clue(said).contains("; 3000 rows are missing from there on"))
+    assert(!said.contains("slower"), said)
+
   test("the tables of a flight that could not start are deleted"):
     val sink = opened(heading("not-flown"))
     sink.close()

@@ -82,7 +82,8 @@ export class Flight {
         vehicle.plan = row.courseNorthM && { north: row.courseNorthM, east: row.courseEastM, stepS: row.courseStepMs / 1000, at };
         break;
       case "prediction":
-        vehicle.errorM = row.errorM;
+        // The circle is round the vehicle's own prediction.
+        if (row.decider === row.vehicle) vehicle.errorM = row.errorM;
         this.series.error.put(at, this.line(vehicle), row.errorM === undefined ? undefined : row.errorM * 1000);
         break;
       case "event":

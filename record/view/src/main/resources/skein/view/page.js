@@ -28,6 +28,7 @@ let flight, connection, changed = false, recorded, playing, warnings;
 window.skein = { get flight() { return flight; }, get recorded() { return recorded; }, get playing() { return playing; }, get isConnected() { return connection.isOpen(); }, get cameras() { return [...cameras.cameras.values()]; }, frames: 0 };
 
 function show(id) {
+  const address = `/flights/${encodeURIComponent(id)}`;
   connection?.close();
   cameras.clear();
   find("graph").hidden = true;
@@ -35,10 +36,10 @@ function show(id) {
   find("control").onsubmit = async event => {
     event.preventDefault();
     const [path, question] = {
-      pause: [`/flights/${id}/pause`, `Pause ${id}? All its vehicles hover, and nothing is decided until it continues.`],
-      continue: [`/flights/${id}/continue`, `Let ${id} go on? Its vehicles move.`],
+      pause: [`${address}/pause`, `Pause ${id}? All its vehicles hover, and nothing is decided until it continues.`],
+      continue: [`${address}/continue`, `Let ${id} go on? Its vehicles move.`],
       hover: ["/hover", "Pause all flights? All vehicles hover."],
-      abort: [`/flights/${id}/abort`, `End ${id} now? All its vehicles hover.`],
+      abort: [`${address}/abort`, `End ${id} now? All its vehicles hover.`],
     }[event.submitter.id];
     if (!confirm(question)) return;
     const answer = await fetch(path, { method: "POST", headers: { "X-Skein-Token": find("token").value } });
@@ -47,7 +48,7 @@ function show(id) {
   flight = new Flight();
   recorded = playing = undefined;
   warnings = new Map();
-  connection = connect(`/flights/${id}`, isWanted, {
+  connection = connect(address, isWanted, {
     info(info) {
       flight = new Flight();
       const ns = time => BigInt(time.sec) * 1000000000n + BigInt(time.nsec);

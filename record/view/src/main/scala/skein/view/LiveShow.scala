@@ -59,7 +59,7 @@ final class LiveShow(
 
   protected def greet(viewer: Viewer): Unit = ()
 
-  def turn(now: Instant): Unit =
+  def turn(now: Instant): Unit = synchronized:
     if ended.isEmpty then
       Iterator.continually(feed.poll()).takeWhile(_.isDefined).take(LiveShow.MostAtOnce).flatten.foreach(show)
       looked = sensors.zip(looked).map: (sensor, last) =>

@@ -17,8 +17,9 @@ import skein.units.Clock
   * so that viewers and flights share no threads.
   *
   * `/` is the page, and over a WebSocket the first flight; `/flights/ID` is one flight over a WebSocket;
-  * `/flights` lists them. With the token in the header `X-Skein-Token`, `POST /flights/ID/pause`,
-  * `…/continue` and `…/abort` control a flight ([[FlightControl]]), and `POST /hover` pauses all.
+  * `/flights` lists them. In a path, an ID is percent-encoded. With the token in the header `X-Skein-Token`,
+  * `POST /flights/ID/pause`, `…/continue` and `…/abort` control a flight ([[FlightControl]]), and
+  * `POST /hover` pauses all.
   */
 final class ViewServer private (
     binding: Http.ServerBinding,
@@ -98,10 +99,11 @@ object ViewServer:
       counts.refusedRequest()
       request.discardEntityBytes()
       Page.answer(status, ContentTypes.`text/plain(UTF-8)`, why)
-    val path = request.uri.path.toString
+    val path  = request.uri.path.toString
+    val place = segments(request.uri.path)
     (request.attributes.get(AttributeKeys.webSocketUpgrade), request.method) match
       case (Some(upgrade: WebSocketUpgrade), _) =>
-        shows.find(show => path == s"/flights/${show.id}").orElse(shows.headOption.filter(_ =>
+        shows.find(show => place == Vector("flights", show.id)).orElse(shows.headOption.filter(_ =>
           path == "/"
         )) match
           case Some(show) => watch(upgrade, show, guest, clock, counts).getOrElse(
@@ -121,7 +123,7 @@ object ViewServer:
         Page.file(path).getOrElse(refused(StatusCodes.NotFound, s"nothing at $path"))
       case (_, HttpMethods.POST) =>
         val said = request.headers.find(_.is("x-skein-token")).fold("")(_.value)
-        (wanted(path, shows), token.is(said)) match
+        (wanted(place, shows), token.is(said)) match
           case (_, false) =>
             refused(StatusCodes.Unauthorized, "expected the token that the terminal shows")
           case (Vector(), _) => refused(StatusCodes.NotFound, s"nothing to be done at $path")
@@ -137,13 +139,19 @@ object ViewServer:
       "controls" -> ujson.Arr.from(FlightControl.values.filter(show.controls.contains).map(_.word))
     )
 
-  private def wanted(path: String, shows: Vector[Show]): Vector[() => Unit] =
-    if path == "/hover" then shows.flatMap(_.controls.get(FlightControl.Pause))
+  /** A path's parts, decoded: a flight's name may contain `%` and `/`. */
+  private def segments(path: Uri.Path): Vector[String] = path match
+    case Uri.Path.Empty               => Vector.empty
+    case Uri.Path.Slash(rest)         => segments(rest)
+    case Uri.Path.Segment(part, rest) => part +: segments(rest)
+
+  private def wanted(place: Vector[String], shows: Vector[Show]): Vector[() => Unit] =
+    if place == Vector("hover") then shows.flatMap(_.controls.get(FlightControl.Pause))
     else
       for
         show    <- shows
         control <-
-          FlightControl.values.find(control => path == s"/flights/${show.id}/${control.word}").toVector
+          FlightControl.values.find(control => place == Vector("flights", show.id, control.word)).toVector
         act <- show.controls.get(control)
       yield act
 

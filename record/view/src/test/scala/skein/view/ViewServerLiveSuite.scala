@@ -254,6 +254,16 @@ class ViewServerLiveSuite extends munit.FunSuite:
       assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
     import FlightControl.*
     assertEquals(served.done.toArray.toSeq, Seq[AnyRef](Pause, Continue, Pause, Abort))
+    // A name of a link may contain reserved characters.
+    val flight = Samples.heading.flight.copy(id = "stream-loss:5%/4,vpn")
+    val ended  = ConcurrentLinkedQueue[FlightControl]()
+    served.shows.add(LiveShow(
+      Samples.heading.copy(flight = flight),
+      Feed(),
+      controls = Map(Abort -> (() => ended.add(Abort): Unit))
+    ))
+    assertEquals(post("/flights/stream-loss%3A5%25%2F4%2Cvpn/abort", right), 200)
+    assertEquals(ended.size, 1)
 
   serving().test("thirty thousand malformed frames do not disturb another viewer"): served =>
     val seed  = 20261122L

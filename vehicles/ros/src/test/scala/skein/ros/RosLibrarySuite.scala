@@ -2,12 +2,13 @@ package skein.ros
 
 import java.io.File
 import java.nio.file.{Files, Path}
+import skein.testing.TemporaryFolders
 
-class RosLibrarySuite extends munit.FunSuite:
+class RosLibrarySuite extends munit.FunSuite, TemporaryFolders:
   private val rcl = System.mapLibraryName("rcl")
 
   private def prefix(withRcl: Boolean): Path =
-    val folder = Files.createTempDirectory("ros")
+    val folder = temporaryFolder()
     val lib    = Files.createDirectory(folder.resolve("lib"))
     if withRcl then Files.createFile(lib.resolve(rcl)): Unit
     folder
