@@ -16,8 +16,8 @@ final case class LearnerSpace(climbs: Boolean):
     if climbs then level ++ Vector[Double](20, 10, 50, 10) else level
 
   /** The network's inputs: [[PlanarObservation.fromOwnHeading]]. Climbing learners also get, positive up, the
-    * opponent's height (m) and vertical speed (m/s) relative to this vehicle, and this vehicle's altitude above
-    * z = 0 (m) and vertical speed (m/s).
+    * opponent's height (m) and vertical speed (m/s) relative to this vehicle, and this vehicle's altitude
+    * above z = 0 (m) and vertical speed (m/s).
     */
   def observe(seen: Observation): Array[Double] =
     val level = PlanarObservation.of(seen).fromOwnHeading

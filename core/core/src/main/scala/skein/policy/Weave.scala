@@ -2,8 +2,8 @@ package skein.policy
 
 import skein.units.Vector3
 
-/** Flies alternate left and right arcs of varying durations. The path depends neither on other vehicles
-  * nor on the age of readings.
+/** Flies alternate left and right arcs of varying durations. The path depends neither on other vehicles nor
+  * on the age of readings.
   *
   * @param turnRadps turn rate of the commanded velocity
   * @param leastS shortest duration of an arc

@@ -135,7 +135,9 @@ class PolicyFormulaSuite extends munit.FunSuite:
           numbers = came.drop(2).toArray
       assertEquals(formula.leaves(draw(random), Metres(-20)), None)
 
-  test("hovering, 3D velocities and commanded altitudes have a vertical formula, and leave the starting altitude"):
+  test(
+    "hovering, 3D velocities and commanded altitudes have a vertical formula, and leave the starting altitude"
+  ):
     for (policy, third, holds) <-
         Seq((Hovering, 0.0, 0.0), (Rising, -1.5, 0.0), (Higher(Metres(-30)), -30.0, 1.0))
     do

@@ -364,7 +364,9 @@ final class FlightAssembler(
         answers =>
           for error <- answers.flatMap(_.left.toOption).headOption do
             if !error.isCertain then
-              throw CannotFly(s"plan-in-packet: ${reached.where} did not say whether it takes plans: ${error.message}")
+              throw CannotFly(
+                s"plan-in-packet: ${reached.where} did not say whether it takes plans: ${error.message}"
+              )
             throw CannotFly(
               "plan-in-packet: expected a buffer of plans beside the vehicles, as the built-in simulator has and " +
                 s"`skein link --buffer` puts before AirSim, got ${reached.where}: ${error.message}"

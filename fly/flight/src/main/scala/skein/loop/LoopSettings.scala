@@ -13,8 +13,8 @@ import skein.vehicle.{Guidance, QuadrotorModel, VehicleModel}
   * @param moveDuration duration of every move command; a vehicle without further commands then holds its
   *   position
   * @param minCommandInterval the rate cap for one vehicle, for all loops
-  * @param paceInterval minimum time of `stream` between two decisions (or commands) for one vehicle; the ticks
-  *   keep the period
+  * @param paceInterval minimum time of `stream` between two decisions (or commands) for one vehicle; the
+  *   ticks keep the period
   * @param movesInFlight maximum number of unanswered moves of one vehicle: see [[skein.flow.Steer]]
   * @param patience longest time for which `stream` waits for the readings of the other vehicles after the
   *   first

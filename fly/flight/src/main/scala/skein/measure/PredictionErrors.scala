@@ -41,7 +41,8 @@ final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
 object PredictionErrors:
   val BinMs: Int = 20
 
-  /** Minimum number of samples for a 95 % quantile that a few outliers do not move: of 40, two lie above it. */
+  /** Minimum number of samples for a 95 % quantile that a few outliers do not move: of 40, two lie above it.
+    */
   val Fewest: Int = 40
 
   private def bin(ageMs: Double): Int = (ageMs / BinMs).round.toInt * BinMs

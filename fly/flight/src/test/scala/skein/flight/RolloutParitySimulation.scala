@@ -11,8 +11,8 @@ import skein.signal.LatencyProfile
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Given the delays of a flight in virtual time, the scalar forward simulation reproduces it, to the last bit:
-  * every vehicle is read at equal nanoseconds and positions, and receives equal headings.
+/** Given the delays of a flight in virtual time, the scalar forward simulation reproduces it, to the last
+  * bit: every vehicle is read at equal nanoseconds and positions, and receives equal headings.
   */
 class RolloutParitySimulation extends munit.FunSuite, Unhurried:
   /** Time until the pursuer has passed, turned and come near again. */
@@ -237,7 +237,9 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     ):
       check(loop, profile("constant:100ms"), 1, AnyPolicies(byAges = true), Span.ofSeconds(6))
 
-  test("forward simulation reproduces stream over vpn as published: spread requests, a decision at each answer"):
+  test(
+    "forward simulation reproduces stream over vpn as published: spread requests, a decision at each answer"
+  ):
     check(LoopKind.Stream, LatencyProfile.vpn, 3, PaperDuel(asPublished = true))
 
   private def profile(name: String): LatencyProfile =

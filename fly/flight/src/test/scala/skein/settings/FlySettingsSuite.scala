@@ -101,7 +101,9 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       Right("plan: Pursuer plans; Evader flies by its own policy")
     )
 
-  test("knows = positions is refused with the loop plan or a solver, which need policies or commands of others"):
+  test(
+    "knows = positions is refused with the loop plan or a solver, which need policies or commands of others"
+  ):
     assertTold("knows = some", "2: skein.fly.knows: expected all or positions, got 'some'")
     assertTold(
       "knows = positions, loops = [plan]",

@@ -89,8 +89,8 @@ final class Rollout private[skein] (
 
   private def isOver: Boolean = tallies(0).count >= scores || world.isOver
 
-  /** The outcome of a team: the minimum distance of any evader, the mean over the evaders of each mean, and the
-    * time of the last capture; distances are to the nearest pursuer, efforts are summed over a side. In a
+  /** The outcome of a team: the minimum distance of any evader, the mean over the evaders of each mean, and
+    * the time of the last capture; distances are to the nearest pursuer, efforts are summed over a side. In a
     * team without sides all vehicles count, with the distance to the nearest other, and the effort is that of
     * the evaders.
     */

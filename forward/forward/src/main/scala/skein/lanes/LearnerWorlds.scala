@@ -41,7 +41,8 @@ trait LearnerWorlds extends AutoCloseable:
   /** Time of the last score, since the run's start, s. */
   def scoredAtS: Float
 
-  /** Writes a score for each world, since [[forgetScores]]: the newest or minimum value, or the sum of all. */
+  /** Writes a score for each world, since [[forgetScores]]: the newest or minimum value, or the sum of all.
+    */
   def soFar(number: Int, into: Array[Float]): Unit
 
   /** Discards all scores except the newest values. */

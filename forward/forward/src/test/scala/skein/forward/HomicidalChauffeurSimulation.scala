@@ -181,7 +181,9 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
     (name, evader) <- if percent == 5 then evaders else evaders.take(1)
   do
     val captureM = (1 + percent * 0.01) * threshold
-    test(s"with a capture radius $percent % above the threshold, the chauffeur captures $name from every start"):
+    test(
+      s"with a capture radius $percent % above the threshold, the chauffeur captures $name from every start"
+    ):
       val count = if evader == evaders.head._2 then 300 else 40
       for (start, number) <- starts(seed = 1, count).zipWithIndex do
         val atS = captureS(chauffeur(captureM), evader(number), start, captureM, start.distance / 5 + 15)

@@ -182,37 +182,38 @@ class ViewServerLiveSuite extends munit.FunSuite:
   serving(
     ViewerLimits(connections = 4),
     standing
-  ).test("idle connections, also after half a request or one message, are closed to make room for new ones"): served =>
-    import java.nio.charset.StandardCharsets.US_ASCII
-    val port                      = served.server.port
-    def ended(socket: Socket)     = Try(socket.getInputStream.readAllBytes()).isSuccess || true
-    def say(text: String): Socket =
-      val socket = Socket("127.0.0.1", port)
-      socket.setSoTimeout(20_000)
-      socket.getOutputStream.write(text.getBytes(US_ASCII))
-      socket
-    val request = s"GET /flights HTTP/1.1\r\nHost: 127.0.0.1:$port\r\n"
-    val upgrade = s"${request.replace("/flights", "/")}Upgrade: websocket\r\nConnection: Upgrade\r\n" +
-      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
-      s"Sec-WebSocket-Protocol: ${Protocol.Names.head}\r\n\r\n"
-    val silent  = say("")
-    val dripped = say(request)
-    // An answer has arrived, so the message was received.
-    val spoken = say(upgrade)
-    assertEquals(spoken.getInputStream.read(), 'H'.toInt)
-    val viewer = connect(port, Protocol.Names*)()
-    assertEquals(viewer.until(text)("op").str, "serverInfo")
-    standing.seconds = 6
-    viewer.send("""{"op":"subscribe","subscriptions":[]}""")
-    viewer.send("nonsense")
-    viewer.until(text.andThen { case said if said("op").str == "status" => () })
-    for gone <- Seq(silent, dripped, spoken) do
-      val next = say(request + "\r\n")
-      assertEquals(next.getInputStream.read(), 'H'.toInt)
-      assert(ended(gone))
-    viewer.send("nonsense")
-    viewer.until(text.andThen { case said if said("op").str == "status" => () })
-    assertEquals(served.server.counts.displacedConnections, 3L)
+  ).test("idle connections, also after half a request or one message, are closed to make room for new ones"):
+    served =>
+      import java.nio.charset.StandardCharsets.US_ASCII
+      val port                      = served.server.port
+      def ended(socket: Socket)     = Try(socket.getInputStream.readAllBytes()).isSuccess || true
+      def say(text: String): Socket =
+        val socket = Socket("127.0.0.1", port)
+        socket.setSoTimeout(20_000)
+        socket.getOutputStream.write(text.getBytes(US_ASCII))
+        socket
+      val request = s"GET /flights HTTP/1.1\r\nHost: 127.0.0.1:$port\r\n"
+      val upgrade = s"${request.replace("/flights", "/")}Upgrade: websocket\r\nConnection: Upgrade\r\n" +
+        "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+        s"Sec-WebSocket-Protocol: ${Protocol.Names.head}\r\n\r\n"
+      val silent  = say("")
+      val dripped = say(request)
+      // An answer has arrived, so the message was received.
+      val spoken = say(upgrade)
+      assertEquals(spoken.getInputStream.read(), 'H'.toInt)
+      val viewer = connect(port, Protocol.Names*)()
+      assertEquals(viewer.until(text)("op").str, "serverInfo")
+      standing.seconds = 6
+      viewer.send("""{"op":"subscribe","subscriptions":[]}""")
+      viewer.send("nonsense")
+      viewer.until(text.andThen { case said if said("op").str == "status" => () })
+      for gone <- Seq(silent, dripped, spoken) do
+        val next = say(request + "\r\n")
+        assertEquals(next.getInputStream.read(), 'H'.toInt)
+        assert(ended(gone))
+      viewer.send("nonsense")
+      viewer.until(text.andThen { case said if said("op").str == "status" => () })
+      assertEquals(served.server.counts.displacedConnections, 3L)
 
   serving().test("a page of another site gets no flight, under any name"): served =>
     val port                                                              = served.server.port

@@ -38,8 +38,8 @@ object Mission:
     val OutOfOrder       = 13
     val Cancelled        = 15
 
-  /** Maximum distance of an item from home, m: a mission beyond it belongs to another home. Far more than
-    * any mission needs, and less than the distance to another town.
+  /** Maximum distance of an item from home, m: a mission beyond it belongs to another home. Far more than any
+    * mission needs, and less than the distance to another town.
     */
   val FarthestM = 20_000.0
 

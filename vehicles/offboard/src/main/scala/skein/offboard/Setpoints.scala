@@ -48,8 +48,8 @@ private[offboard] object Setpoints:
   private val NearM        = 1.0
   private val ForwardMps   = 0.5
 
-  /** The type mask's bits for yaw, the yaw, rad, and the yaw rate, rad/s. A set bit makes the autopilot ignore
-    * its field.
+  /** The type mask's bits for yaw, the yaw, rad, and the yaw rate, rad/s. A set bit makes the autopilot
+    * ignore its field.
     */
   private def turn(yaw: Yaw, travelNed: Vector3): (mask: Int, yaw: Double, rate: Double) = yaw match
     case Yaw.Towards(heading) => (mask = IgnoreRate, yaw = heading.value, rate = 0.0)

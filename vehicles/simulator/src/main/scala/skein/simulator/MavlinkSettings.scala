@@ -22,9 +22,9 @@ final case class MavlinkSettings(
 final case class MavlinkPort(at: Address, tells: Option[Address] = None, systems: Vector[Int] = Vector.empty)
 
 object MavlinkSettings:
-  /** The ports of PX4's simulation (`px4-rc.mavlink`). On this machine, a ground station that listens at 14550
-    * is connected to all vehicles, and a program that listens at 14540 + i to vehicle `i`. Any peer reaches all
-    * vehicles by sending to 18570.
+  /** The ports of PX4's simulation (`px4-rc.mavlink`). On this machine, a ground station that listens at
+    * 14550 is connected to all vehicles, and a program that listens at 14540 + i to vehicle `i`. Any peer
+    * reaches all vehicles by sending to 18570.
     *
     * @param instance PX4 instance of the first vehicle; it is added to `i`, to 18570 and to the system IDs
     */
