@@ -40,11 +40,11 @@ object NoisySensor:
   import SensorNoise.Tick
 
   // Numbers of the sequences of random numbers, after those of the three drifts.
-  private val Outages    = 3
-  private val Dropouts   = 4
-  private val Positions  = 5
-  private val Velocities = 8
-  private val Headings   = 11
+  private val Outages           = 3
+  private val Dropouts          = 4
+  private[skein] val Positions  = 5
+  private[skein] val Velocities = 8
+  private val Headings          = 11
 
   private final class Drift(noise: SensorNoise, seed: Long):
     private val random  = SplitMix64(seed)

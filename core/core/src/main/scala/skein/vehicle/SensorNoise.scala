@@ -24,7 +24,9 @@ final case class SensorNoise(
     driftS: Double = 60,
     dropout: Double = 0,
     outage: Option[Impairment.Outage] = None
-)
+):
+  /** Whether readings may be missing. */
+  private[skein] def mayMiss: Boolean = dropout > 0 || outage.isDefined
 
 object SensorNoise:
   import Assignments.number
@@ -66,7 +68,7 @@ object SensorNoise:
   private val MostDropout = 0.9
 
   /** Interval at which drift is drawn; in between it is linear. */
-  private[vehicle] val Tick: Span = Span.ofMillis(100)
+  private[skein] val Tick: Span = Span.ofMillis(100)
 
   /** A simulator that is silent for 10 s ends a flight. */
   private val LongestOutage = Span.ofSeconds(5)

@@ -74,8 +74,12 @@ public final class LoopKernel {
    * @param links the link of each world; their longest delay must not exceed that of the loop
    */
   public void fly(int[] worldKeys, TabledDelays[] links) {
+    if (offers.missing.areSome) offers.missing.start(worldKeys);
     offers.start(worldKeys, links);
-    for (LaneAgents each : agents) each.start();
+    for (LaneAgents each : agents) {
+      each.start();
+      each.vehicles.seed(worldKeys, each.self);
+    }
     scores.start(WORLDS);
     Arrays.fill(begunS, Double.POSITIVE_INFINITY);
     for (int row = 0; row < steps; row++) {
@@ -108,7 +112,7 @@ public final class LoopKernel {
 
   private void read(int row, LaneAgents agent) {
     int[] at = offers.sampledAt[agent.self], fresh = offers.fresh[agent.self], held = readAt[agent.self];
-    agent.vehicles.read(row, isForecast ? ALL : vectors, offers.joinedAt, at, fresh, withVelocity);
+    agent.vehicles.sense(row, isForecast ? ALL : vectors, offers.joinedAt, at, fresh, withVelocity);
     if (withAges)
       for (int i = 0; i < WORLDS; i += LANES) {
         IntVector now = IntVector.fromArray(INTS, at, i), before = IntVector.fromArray(INTS, held, i);

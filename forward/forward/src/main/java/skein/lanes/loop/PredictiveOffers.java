@@ -74,8 +74,13 @@ final class PredictiveOffers extends LaneOffers {
   private boolean more;
 
   /** @param maxDelayS the longest one-way delay of any link */
-  PredictiveOffers(LoopTiming.Predictive timing, int vehicles, double maxDelayS, LaneForecast forecast) {
-    super(vehicles, new LaneDelays(), true, 0);
+  PredictiveOffers(
+      LoopTiming.Predictive timing,
+      int vehicles,
+      double maxDelayS,
+      LaneForecast forecast,
+      MissingReadings missing) {
+    super(vehicles, new LaneDelays(), missing, true, 0);
     this.forecast = forecast;
     double periodS = timing.periodS();
     periodGrains = LaneViews.grains(periodS);
@@ -154,6 +159,7 @@ final class PredictiveOffers extends LaneOffers {
           roundTrip.compare(LE, timeout).and(IntVector.fromArray(INTS, answers, i).compare(NE, none));
       none.blend(at.add(roundTrip), comes).intoArray(answers, i);
     }
+    if (missing.areSome) missing.replace(vehicle, begin, reads, answers, NONE);
   }
 
   /** Computes when the request is sent. A missed request has no answer. */

@@ -10,12 +10,17 @@ final class StreamOffers extends LaneOffers {
 
   /** @param maxDelayS the longest one-way delay of any link */
   StreamOffers(
-      LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, boolean shortCut) {
-    this(new LaneViews(timing, vehicles, durationS, maxDelayS, shortCut));
+      LoopTiming.Stream timing,
+      int vehicles,
+      double durationS,
+      double maxDelayS,
+      boolean shortCut,
+      MissingReadings missing) {
+    this(new LaneViews(timing, vehicles, durationS, maxDelayS, shortCut, missing));
   }
 
   private StreamOffers(LaneViews views) {
-    super(views.vehicles, views.delays, true, LaneViews.ROWS_EARLY);
+    super(views.vehicles, views.delays, views.missing, true, LaneViews.ROWS_EARLY);
     this.views = views;
   }
 
