@@ -104,6 +104,7 @@ public final class LaneForecast {
   private void enter(ForecastTrack track, ForecastVehicles by, LaneVehicles read) {
     ArrivedReadings arrived = track.arrived;
     read.sense(row, arrived.vectors, arrived.enters, arrived.madeAt(), arrived.enters, true);
+    if (read.isSensed() && track.rest(read.state)) by.rest(track.first, track.restZ);
     by.enter(arrived.vectors, track, arrived.enters, read.state);
   }
 

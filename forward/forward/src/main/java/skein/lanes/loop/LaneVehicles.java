@@ -100,6 +100,10 @@ public abstract class LaneVehicles {
     periodGrains = LaneViews.grains(periodS);
   }
 
+  final boolean isSensed() {
+    return sensors != null;
+  }
+
   /** Sets the seeds of the errors of the next episode's readings, if there are any.
    *
    * @param vehicle index of these vehicles
@@ -131,7 +135,8 @@ public abstract class LaneVehicles {
     sensors.add(LaneSensors.NORTH, sensedNs, from, to, state, SEEN_X);
     sensors.add(LaneSensors.EAST, sensedNs, from, to, state, SEEN_Y);
     if (inSpace) sensors.add(LaneSensors.DOWN, sensedNs, from, to, state, SEEN_Z);
-    if (!withVelocity) return;
+    // In space, velocities are always read.
+    if (!withVelocity && !inSpace) return;
     sensors.add(LaneSensors.NORTH_MPS, sensedNs, from, to, state, SEEN_VX);
     sensors.add(LaneSensors.EAST_MPS, sensedNs, from, to, state, SEEN_VY);
     if (inSpace) sensors.add(LaneSensors.DOWN_MPS, sensedNs, from, to, state, SEEN_VZ);

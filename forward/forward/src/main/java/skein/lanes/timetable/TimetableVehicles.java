@@ -118,7 +118,8 @@ public abstract class TimetableVehicles extends TimetableReadings {
     sensors.add(LaneSensors.NORTH, seenX, into);
     sensors.add(LaneSensors.EAST, seenY, into);
     if (inSpace) sensors.add(LaneSensors.DOWN, seenZ, into);
-    if (!withVelocity) return;
+    // In space, velocities are always read.
+    if (!withVelocity && !inSpace) return;
     sensors.add(LaneSensors.NORTH_MPS, seenVx, into);
     sensors.add(LaneSensors.EAST_MPS, seenVy, into);
     if (inSpace) sensors.add(LaneSensors.DOWN_MPS, seenVz, into);
