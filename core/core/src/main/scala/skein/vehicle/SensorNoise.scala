@@ -25,8 +25,9 @@ final case class SensorNoise(
     dropout: Double = 0,
     outage: Option[Impairment.Outage] = None
 ):
-  /** Whether readings may be missing. */
-  private[skein] def mayMiss: Boolean = dropout > 0 || outage.isDefined
+  /** Only what decides which readings are missing; None if none is. */
+  private[skein] def ofMissing: Option[SensorNoise] =
+    Option.when(dropout > 0 || outage.isDefined)(SensorNoise(text, dropout = dropout, outage = outage))
 
 object SensorNoise:
   import Assignments.number

@@ -22,7 +22,6 @@ public final class LaneNormals {
 
   private static final VectorSpecies<Double> DOUBLES = DoubleVector.SPECIES_PREFERRED;
 
-  /** Constants of {@link SplitMix64}. */
   public static final long GAMMA = 0x9e3779b97f4a7c15L,
       MULTIPLIER_1 = 0xbf58476d1ce4e5b9L,
       MULTIPLIER_2 = 0x94d049bb133111ebL;

@@ -3,7 +3,7 @@ package skein.forward
 import skein.policy.Action
 import skein.vehicle.{SensorNoise, VehicleModel}
 
-/** Vehicles whose readings have errors. */
+/** Vehicles whose readings have errors, each vehicle in each world its own. */
 final case class SensedResponse(of: VelocityResponse, noise: SensorNoise) extends VelocityResponse:
   def create(): Vehicle = of.create()
 

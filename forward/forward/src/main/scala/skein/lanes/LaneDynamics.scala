@@ -99,7 +99,7 @@ private final class PredictedDynamics(model: LaneDynamics, by: LanePredictor) ex
     flown.predicted = by.vehicles(agent)
     flown
 
-/** Adds errors to readings. */
+/** Adds errors to the readings of vehicles with these dynamics. */
 private final class SensedDynamics(model: LaneDynamics, noise: SensorNoise) extends LaneDynamics:
   export model.{clock, deadTimeS, handoverS, stepS}
   override def fliesAlone: Boolean                     = model.fliesAlone

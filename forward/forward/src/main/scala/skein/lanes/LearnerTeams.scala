@@ -196,7 +196,7 @@ object LearnerTeams:
     private def timetableOf(form: TeamForm, draw: Long): Timetable =
       val key = keyOf(draw)
       // More draws than keys, so these are not kept.
-      if !episodes.areOne(form) && form.vehicles.exists(_.sensors.exists(_.mayMiss)) then
+      if !episodes.areOne(form) && form.vehicles.exists(_.sensors.exists(_.ofMissing.isDefined)) then
         episodes.timetable(link, key, form, Some(draw))
       else
         timetables.getOrMake(episodes.nameOf(link, key, form))(episodes.timetable(link, key, form))

@@ -28,7 +28,6 @@ private[lanes] final case class TeamForm(
   /** Whether some vehicle knows its opponent only through a camera. */
   def sees: Boolean = policies.eyes.nonEmpty
 
-  /** Whether readings have errors. */
   val isSensed: Boolean = vehicles.exists(_.sensors.isDefined)
 
   /** The reason why a GPU does not support such a team; None if it does. */

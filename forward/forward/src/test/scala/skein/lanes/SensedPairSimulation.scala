@@ -15,9 +15,9 @@ class SensedPairSimulation extends munit.FunSuite:
     "drag"    -> PlantResponse(ReducedModel.AirSim),
     "tilting" -> PlantResponse(Tilting(0.95, 0.9, 0.2, 0.05))
   )
-  private val duel                           = Pair.paper.copy(evader = Pair.paper.evader.copy(startY = 2))
-  private def pursuer(world: Int): Policy    = AgeAwarePursuer(8, 0.01 * world, 1)
-  private def evader(world: Int): Policy     = PaperEvader(7 + 0.02 * world)
+  private val duel                        = Pair.paper.copy(evader = Pair.paper.evader.copy(startY = 2))
+  private def pursuer(world: Int): Policy = AgeAwarePursuer(8, 0.01 * world, 1)
+  private def evader(world: Int): Policy  = PaperEvader(7 + 0.02 * world)
   private def sensed(of: VelocityResponse, text: String) =
     SensedResponse(of, SensorNoise.parse(text).fold(fail(_), identity))
 
@@ -40,8 +40,8 @@ class SensedPairSimulation extends munit.FunSuite:
     )
     if vehicles == "lag" || text.contains("outage")
   do
-    test(s"$vehicles, $timing, $text: the scalar reference's decisions and flight for 6 s"):
-      val flown = duel.copy(durationS = 6)
+    test(s"$vehicles, $timing, $text: the scalar reference's decisions and flight for 4 s"):
+      val flown = duel.copy(durationS = 4)
       PairAgreement
         .alone(flown, timing, sensed(model, text), _ => DelayTable.vpn, keys(_))(pursuer, evader)
         .check("own delays", 0 until worlds by 7)
@@ -50,16 +50,13 @@ class SensedPairSimulation extends munit.FunSuite:
         .check("shared delays", 0 until worlds by 25)
 
   for timing <- loops(models.head._2) do
-    test(s"$timing, long outages: the scalar reference's decisions and flight for 40 s"):
+    test(s"$timing, long outages: the scalar reference's decisions and flight for 25 s"):
       // A forecast of the scalar engine keeps the last 64 commands.
-      val outage = if timing.isInstanceOf[LoopTiming.Predictive] then "2s/9s" else "5s/9s"
+      val outage = if timing.isInstanceOf[LoopTiming.Predictive] then "2s/9s" else "5s/20s"
       val model  = sensed(models.head._2, s"position=0.3,dropout=10%,outage=$outage")
       PairAgreement
-        .alone(duel.copy(durationS = 40), timing, model, _ => DelayTable.vpn, keys(_))(
-          world => PaperPursuer(0.6 + 0.008 * world),
-          evader
-        )
-        .check("own delays", 0 until worlds by 16)
+        .alone(duel.copy(durationS = 25), timing, model, _ => DelayTable.vpn, keys(_))(pursuer, evader)
+        .check("own delays", 0 until worlds by 20)
 
   for timing <- loops(models.head._2); shared <- Seq(true, false) do
     test(s"$timing, ${if shared then "shared" else "own"} delays, with a camera too: images show the truth"):

@@ -39,7 +39,7 @@ import skein.vehicle.{ReducedModel, SensorNoise}
       s" over $text" -> LinkDelays.checked(link, LinkDelays.packetsPerS(2, timing.periodS)).toOption.get
     mixed = if !shared && name == "lag" then (" over vpn-mixed" -> LinkDelays.vpnMixed) +: losing else Nil
     (linked, over) <- Seq[(String, Delays)]("" -> DelayTable.vpn) ++ mixed
-    text <- if sees || linked.nonEmpty then Seq("") else sensors
+    text           <- if sees || linked.nonEmpty then Seq("") else sensors
     row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}${
         if sees then " by eye" else ""
       }$linked${if text.isEmpty then "" else s" with $text"}"

@@ -11,7 +11,11 @@ class LaneNormalsSuite extends munit.FunSuite:
     val normal = Array.ofDim[Double](count)
     LaneNormals.of(bits, 0, count, normal)
     for at <- bits.indices do
-      assertEquals(normal(at), NormalQuantile(((bits(at) >>> 11) * math.pow(2, -53)).max(1e-12)), s"${bits(at)}")
+      assertEquals(
+        normal(at),
+        NormalQuantile(((bits(at) >>> 11) * math.pow(2, -53)).max(1e-12)),
+        s"${bits(at)}"
+      )
 
   test("mixed numbers are those of the scalar generator"):
     assertEquals(LaneNormals.mix(5 + LaneNormals.GAMMA), SplitMix64(5).nextLong())

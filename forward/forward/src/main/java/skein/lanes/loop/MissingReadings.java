@@ -19,7 +19,6 @@ public final class MissingReadings {
   private final SensorNoise[] noise;
   private final NoisySensor[][] sensors;
 
-  /** Whether readings may be missing at all. */
   final boolean areSome;
 
   /** @param noise by vehicle; null where every request finds a reading */
@@ -48,11 +47,11 @@ public final class MissingReadings {
   /** Replaces the times of answers without a reading.
    *
    * @param readAt times at which the requests reach the vehicle, in grains from {@code begin}
-   * @param answers times of their answers; {@link LaneOffers#NONE} where there is none
+   * @param answers times of their answers; {@link Integer#MAX_VALUE} where there is none
    */
   void replace(int vehicle, long begin, int[] readAt, int[] answers, int by) {
     for (int world = 0; world < WORLDS; world++)
-      if (answers[world] != LaneOffers.NONE && is(vehicle, world, begin + readAt[world])) answers[world] = by;
+      if (answers[world] != Integer.MAX_VALUE && is(vehicle, world, begin + readAt[world])) answers[world] = by;
   }
 
   /** Finds, for rounds that request all vehicles in turn, the first request without a reading.

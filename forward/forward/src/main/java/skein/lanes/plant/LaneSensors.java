@@ -37,7 +37,6 @@ public final class LaneSensors {
 
   private final double driftM, keeps, renews;
 
-  /** Number of axes that are read. */
   private final int axes;
 
   // The seeds by component and world, mixed as far as they do not depend on the time; and those of drifts.
@@ -145,7 +144,7 @@ public final class LaneSensors {
     for (int i = 0; i < WORLDS; i++) reading[at + i] += (float) errors[i];
   }
 
-  /** @return false if the component has no errors */
+  /** Computes {@link #errors} in a range of worlds; false, without any, if the component has none. */
   private boolean draw(int component, int from, int to) {
     boolean isWhite = sd[component] > 0, drifts = driftM > 0 && component < AXES;
     if (isWhite) {
@@ -181,7 +180,6 @@ public final class LaneSensors {
     }
   }
 
-  /** Draws drifts up to a tick. */
   private void drawTo(int last) {
     int to = areOne ? LONGS.length() : WORLDS;
     for (; ticks <= last; ticks++)

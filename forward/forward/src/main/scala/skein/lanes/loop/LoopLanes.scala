@@ -25,7 +25,7 @@ private[lanes] final class LoopLanes(
 ):
   private val vehicles = predictors.size
   private val missing  = MissingReadings(
-    predictors.indices.map(noise.lift(_).flatten.filter(_.mayMiss).orNull).toArray
+    predictors.indices.map(noise.lift(_).flatten.flatMap(_.ofMissing).orNull).toArray
   )
 
   /** The forecast; null if decisions use the readings themselves. */
@@ -41,7 +41,7 @@ private[lanes] final class LoopLanes(
     for by <- predictors(vehicle) do forecast.follow(vehicle, by.alone(agent), read)
 
   val offers: LaneOffers = timing match
-    case stream: LoopTiming.Stream         => 
+    case stream: LoopTiming.Stream =>
       StreamOffers(stream, vehicles, durationS, maxDelayS, shortCut, missing)
     case sequential: LoopTiming.Sequential => SequentialOffers(sequential, vehicles, missing)
     case futures: LoopTiming.Futures       => FuturesOffers(futures, vehicles, maxDelayS, missing)

@@ -27,7 +27,7 @@ private[lanes] object StandingStill:
     */
   final class Response(handsOverS: Double = 0, noise: Option[SensorNoise] = None) extends VelocityResponse:
     override def handoverS: Double            = handsOverS
-    override def sensors: Option[SensorNoise] = noise.filter(_.mayMiss)
+    override def sensors: Option[SensorNoise] = noise
     def create(): Vehicle                     = new Vehicle:
       def start(x: Double, y: Double, z: Double): Unit = ()
       def act(action: Action): Unit                    = ()

@@ -83,7 +83,7 @@ private[skein] object Timetable:
       StandingStill.engagement(models.size, durationS, eyes),
       unpredicted(timing),
       link,
-      models.map(model => StandingStill.Response(model.handoverS, model.sensors)),
+      models.map(model => StandingStill.Response(model.handoverS, model.sensors.flatMap(_.ofMissing))),
       asksPolicies = false
     ).fly(key, observer = notes, sensorSeed = sensorSeed): Unit
     TimetableCompiler(notes, models).result
