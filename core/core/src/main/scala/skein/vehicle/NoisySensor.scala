@@ -10,7 +10,7 @@ import skein.units.*
 final class NoisySensor(noise: SensorNoise, seed: Long):
   import NoisySensor.*
 
-  private val drifts  =
+  private val drifts =
     Vector.tabulate(if noise.driftM == 0 then 0 else 3)(axis => Drift(noise, SplitMix64.seedOf(seed, axis)))
   private val outages = noise.outage.map(OutageTimes(_, SplitMix64.seedOf(seed, Outages)))
 
