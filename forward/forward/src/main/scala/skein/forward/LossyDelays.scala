@@ -27,9 +27,11 @@ final class LossyDelays private (
     bursts: Option[(lastS: Double, betweenS: Double)],
     outages: Option[(lastS: Double, betweenS: Double)],
     timeout: Span,
-    mostTries: Int
+    private[skein] val mostTries: Int
 ) extends TabledDelays:
   import LossyDelays.*
+
+  private[skein] def timeoutNs: Long = timeout.toNanos
 
   /** A message is lost if the low bits of its random number are below this; the upper bits choose the delay.
     */

@@ -2,9 +2,11 @@ package skein.lanes.loop;
 
 import static jdk.incubator.vector.VectorOperators.ASHR;
 import static jdk.incubator.vector.VectorOperators.GE;
+import static jdk.incubator.vector.VectorOperators.GT;
 import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
+import static jdk.incubator.vector.VectorOperators.NE;
 import static jdk.incubator.vector.VectorOperators.XOR;
 import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
@@ -24,7 +26,7 @@ import skein.simd.WorldRandom;
  * DelayTable#GrainNs}, by {@link WorldRandom}'s hash: a table look-up takes as long as a dozen other
  * operations, which overlap with it. If a link's table changes over time ({@link TabledDelays}), the time of
  * sending decides which table applies; such worlds are processed one by one. So are messages that may be lost
- * ({@link LossyDelays}).
+ * in bursts or outages ({@link LossyDelays}).
  */
 final class LaneDelays {
   private static final int WORLDS = LanePolicy.WORLDS;
@@ -58,6 +60,9 @@ final class LaneDelays {
    */
   boolean isSteady;
 
+  /** Whether some link's delays are all equal, so that many messages arrive in one moment. */
+  boolean isConstant;
+
   /** Whether some link's table changes, whether some link loses packets, and whether losses depend on the
    * time.
    */
@@ -73,10 +78,13 @@ final class LaneDelays {
   /** A message of a world may be lost if the low bits of its random number are below this. */
   private final int[] lossThreshold = new int[WORLDS];
 
-  /** The loss-free time around the last message, by direction and world: its begin and end, since the
+  /** The first time-out of a lost message, in grains, and how often it is sent again at most. */
+  private final int[] timeout = new int[WORLDS], mostTries = new int[WORLDS];
+
+  /** The loss-free time around the last message, by {@link #calmOf} and world: its begin and end, since the
    * flight's start, in units of 2^{@link #COARSE} grains.
    */
-  private final int[][] calmFrom = new int[2][WORLDS], calmUntil = new int[2][WORLDS];
+  private final int[][] calmFrom = new int[4][WORLDS], calmUntil = new int[4][WORLDS];
 
   /** Number of low bits dropped from times that are compared with a loss-free time, so that hours fit into an
    * int.
@@ -97,13 +105,15 @@ final class LaneDelays {
     keys = worldKeys;
     starts++;
     tableCount = 0;
-    changes = loses = losesByTime = false;
+    changes = loses = losesByTime = isConstant = false;
     for (int i = 0; i < WORLDS; i++) {
       lossy[i] = links[i] instanceof LossyDelays losing ? losing : null;
       if (lossy[i] != null) startLosses(i, worldKeys[i]);
       else lossThreshold[i] = 0;
-      if (baseOf(links[i]) instanceof DelayTable table) tableOf[i] = beginOf(table);
-      else changes = true;
+      if (baseOf(links[i]) instanceof DelayTable table) {
+        tableOf[i] = beginOf(table);
+        isConstant |= delays[tableOf[i]] == delays[tableOf[i] + DelayTable.Size() - 1];
+      } else changes = true;
     }
     isSteady = !changes && !loses;
     if (changes)
@@ -116,11 +126,13 @@ final class LaneDelays {
   private void startLosses(int world, int worldKey) {
     loses = true;
     lossThreshold[world] = lossy[world].lossThreshold();
+    timeout[world] = (int) (lossy[world].timeoutNs() / DelayTable.GrainNs());
+    mostTries[world] = lossy[world].mostTries();
     losesByTime |= lossy[world].isTimed();
     lossTimes[world] = lossy[world].times(worldKey);
-    for (int direction = 0; direction < 2; direction++) {
-      calmFrom[direction][world] = 0;
-      calmUntil[direction][world] = lossy[world].isTimed() ? 0 : Integer.MAX_VALUE;
+    for (int calm = 0; calm < 4; calm++) {
+      calmFrom[calm][world] = 0;
+      calmUntil[calm][world] = lossy[world].isTimed() ? 0 : Integer.MAX_VALUE;
     }
   }
 
@@ -237,37 +249,60 @@ final class LaneDelays {
   }
 
   private void lose(LaneVectors vectors, int line, long begin, int[] sentAt, int[] values) {
-    int[] from = calmFrom[line & 1], until = calmUntil[line & 1];
+    int[] from = calmFrom[calmOf(line)], until = calmUntil[calmOf(line)];
     IntVector coarse = IntVector.broadcast(INTS, (int) (begin >> COARSE));
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       VectorMask<Integer> mayLose =
           IntVector.fromArray(INTS, bits, i).and(LOW_BITS).compare(LT, IntVector.fromArray(INTS, lossThreshold, i));
-      if (losesByTime) {
+      if (!losesByTime) {
+        await(i, mayLose, values);
+      } else {
         // The sum of two times without their low bits is that of the sum, or one less.
         IntVector at = IntVector.fromArray(INTS, sentAt, i).lanewise(ASHR, COARSE).add(coarse);
         mayLose =
             mayLose
                 .or(at.compare(LE, IntVector.fromArray(INTS, from, i)))
                 .or(at.compare(GE, IntVector.fromArray(INTS, until, i).sub(1)));
+        // Without a message there is no time.
+        mayLose = mayLose.and(IntVector.fromArray(INTS, sentAt, i).compare(NE, Integer.MAX_VALUE));
+        for (long lanes = mayLose.toLong(); lanes != 0; lanes &= lanes - 1)
+          lose(i + Long.numberOfTrailingZeros(lanes), line, begin, sentAt, values);
       }
-      for (long lanes = mayLose.toLong(); lanes != 0; lanes &= lanes - 1)
-        lose(i + Long.numberOfTrailingZeros(lanes), line, begin, sentAt, values);
+    }
+  }
+
+  /** Adds {@link LossyDelays#waitNs} where a message is lost, whatever the time. */
+  private void await(int i, VectorMask<Integer> lost, int[] values) {
+    IntVector drawn = IntVector.fromArray(INTS, bits, i), wait = IntVector.fromArray(INTS, timeout, i);
+    for (int tries = 1; lost.anyTrue(); tries++) {
+      IntVector.fromArray(INTS, values, i).add(wait, lost).intoArray(values, i);
+      wait = wait.add(wait);
+      IntVector a = drawn.add(tries * WorldRandom.STRIDE);
+      a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(WorldRandom.MULTIPLIER_1);
+      a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(WorldRandom.MULTIPLIER_2);
+      lost =
+          lost.and(a.lanewise(XOR, a.lanewise(LSHR, 16)).and(LOW_BITS).compare(LT, IntVector.fromArray(INTS, lossThreshold, i)))
+              .and(IntVector.fromArray(INTS, mostTries, i).compare(GT, tries));
     }
   }
 
   private void lose(int world, int line, long begin, int[] sentAt, int[] values) {
     LossyDelays losses = lossy[world];
-    // Without a message there is no time.
-    if (losses == null || sentAt[world] == Integer.MAX_VALUE) return;
+    if (losses == null) return;
     LossTimes times = lossTimes[world];
     int grain = DelayTable.GrainNs();
     long at = (begin + sentAt[world]) * grain;
     values[world] += (int) (losses.waitNs(times, bits[world], line, at) / grain);
     if (losses.isTimed() && !times.isLost(line & 1, at)) {
-      calmFrom[line & 1][world] = times.calmFromNs() == Long.MIN_VALUE ? -1 : coarse(times.calmFromNs());
-      calmUntil[line & 1][world] = coarse(times.calmUntilNs());
+      calmFrom[calmOf(line)][world] = times.calmFromNs() == Long.MIN_VALUE ? -1 : coarse(times.calmFromNs());
+      calmUntil[calmOf(line)][world] = coarse(times.calmUntilNs());
     }
+  }
+
+  /** Requests are drawn further ahead than commands, so each direction has a loss-free time for both. */
+  private static int calmOf(int line) {
+    return line & 1 | (Delays.isCommand(line) ? 2 : 0);
   }
 
   private static int coarse(long ns) {

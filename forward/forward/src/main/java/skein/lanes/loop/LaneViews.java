@@ -51,7 +51,7 @@ public final class LaneViews {
   /** Maximum number of periods within which a request is answered in the regular case, so that no later
    * period's request is answered first and the window is never full.
    */
-  private static final int MOST_AHEAD = 4;
+  static final int MOST_AHEAD = 4;
 
   /** Number of periods by which a view may be known before its own period. */
   static final int ROWS_EARLY = 1;
@@ -153,7 +153,6 @@ public final class LaneViews {
   void start(int[] worldKeys, TabledDelays[] worldLinks) {
     keys = worldKeys;
     links = worldLinks;
-    delays.start(worldKeys, worldLinks);
     irregularCount = 0;
     Arrays.fill(irregularUpTo, -1);
     Arrays.fill(hasNext, false);

@@ -1,8 +1,9 @@
 package skein.lanes.loop
 
 import scala.collection.mutable.ArrayBuffer
-import skein.forward.{AlternatingDelays, DelayTable, LoopTiming, TabledDelays}
+import skein.forward.{AlternatingDelays, DelayTable, LinkDelays, LoopTiming, TabledDelays}
 import skein.optimise.LatencyBudget
+import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
 import skein.vehicle.SensorNoise
 
@@ -46,7 +47,7 @@ class StreamOffersSuite extends munit.FunSuite:
           def times(of: Array[Int]) = begin + of(world)
           told(world) += Told(
             times(offers.joinedAt),
-            Option.when(offers.nextAt(world) != LaneOffers.NONE)(times(offers.nextAt)),
+            Option.when(times(offers.nextAt) < durationS * 1e9 / DelayTable.GrainNs)(times(offers.nextAt)),
             team.map(v => times(offers.sampledAt(v))),
             team.map(isNew(_, world)),
             team.map(v => LaneDelays.placeOf(row) + offers.place(v)(world))
@@ -70,9 +71,13 @@ class StreamOffersSuite extends munit.FunSuite:
     "slow and direct" -> AlternatingDelays(wild(300, 300), DelayTable.direct, 1, 0.5)
   ).map((name, link) => s"$name in turns" -> link)
 
+  private val losing = Seq("loss:5%,vpn", "loss:5%/4,outage:1s/10s,vpn", "loss:10%,constant:80ms").map: text =>
+    val link = LatencyProfile.parse(text, Left(_)).flatMap(LinkDelays.checked(_, packetsPerS = 40))
+    text -> link.toOption.collect { case delays: TabledDelays => delays }.get
+
   for
     vehicles    <- Seq(2, 3, 6)
-    (name, bad) <- steady ++ changing
+    (name, bad) <- steady ++ changing ++ losing
   do
     test(s"$vehicles vehicles, $name: views with SIMD equal those computed one by one"):
       agree(vehicles, bad)
@@ -88,8 +93,8 @@ class StreamOffersSuite extends munit.FunSuite:
   private def agree(vehicles: Int, bad: TabledDelays, noise: SensorNoise = null, leastHz: Double = 5): Unit =
     val timing = LoopTiming.stream(0.1)
     // In neighbouring lanes with links without any irregularity.
-    val links =
-      Array.tabulate[TabledDelays](worlds)(world => if world % 3 == 0 then DelayTable.none else bad)
+    val good  = if bad.isInstanceOf[DelayTable] && noise == null then DelayTable.none else DelayTable.direct
+    val links = Array.tabulate[TabledDelays](worlds)(world => if world % 3 == 0 then good else bad)
     val byLanes  = views(timing, vehicles, links, shortCut = true, noise)
     val oneByOne = views(timing, vehicles, links, shortCut = false, noise)
     // Views are reported early, so the last ones are reported although they are joined after the flight's
