@@ -105,7 +105,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         altitude and ``drag`` at others, or ``tilt`` if a policy may climb.
     sensors : str
         Errors of readings, such as ``position=0.1,velocity=0.05,dropout=2%`` (standard deviations in m and m/s); by default
-        readings are true. Environments are then simulated one by one.
+        readings are true.
     altitude_m : float, optional
         Altitude of all vehicles at the start; by default the scenario's.
     episode_s : float

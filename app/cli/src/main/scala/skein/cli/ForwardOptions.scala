@@ -31,7 +31,7 @@ final case class ForwardOptions(
     plant: Option[String],
     @arg(doc =
       "errors of the vehicles' readings, such as position=0.1,dropout=2%: position, velocity, heading (standard " +
-        "deviations in m, m/s, rad), drift=1.5/60s, dropout, outage=1s/20s; then world by world, without SIMD"
+        "deviations in m, m/s, rad), drift=1.5/60s, dropout, outage=1s/20s"
     )
     sensors: Option[String],
     @arg(doc =

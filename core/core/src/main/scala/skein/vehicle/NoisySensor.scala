@@ -10,7 +10,8 @@ import skein.units.*
 final class NoisySensor(noise: SensorNoise, seed: Long):
   import NoisySensor.*
 
-  private val drifts  = Vector.tabulate(3)(axis => Drift(noise, SplitMix64.seedOf(seed, axis)))
+  private val drifts =
+    Vector.tabulate(if noise.driftM == 0 then 0 else 3)(axis => Drift(noise, SplitMix64.seedOf(seed, axis)))
   private val outages = noise.outage.map(OutageTimes(_, SplitMix64.seedOf(seed, Outages)))
 
   /** Whether the sensors have no reading of this time. */
@@ -24,7 +25,7 @@ final class NoisySensor(noise: SensorNoise, seed: Long):
         if sd == 0 then 0.0 else sd * NormalQuantile(uniform(first + axis, at).max(1e-12))
       Vector3(error(0), error(1), error(2))
     val drift =
-      if noise.driftM == 0 then Vector3.Zero else Vector3(drifts(0)(at), drifts(1)(at), drifts(2)(at))
+      if drifts.isEmpty then Vector3.Zero else Vector3(drifts(0)(at), drifts(1)(at), drifts(2)(at))
     truth.copy(
       positionNed = truth.positionNed + white(Positions, noise.positionM) + drift,
       velocityNed = truth.velocityNed + white(Velocities, noise.velocityMps),
@@ -40,11 +41,11 @@ object NoisySensor:
   import SensorNoise.Tick
 
   // Numbers of the sequences of random numbers, after those of the three drifts.
-  private val Outages    = 3
-  private val Dropouts   = 4
-  private val Positions  = 5
-  private val Velocities = 8
-  private val Headings   = 11
+  private val Outages           = 3
+  private val Dropouts          = 4
+  private[skein] val Positions  = 5
+  private[skein] val Velocities = 8
+  private val Headings          = 11
 
   private final class Drift(noise: SensorNoise, seed: Long):
     private val random  = SplitMix64(seed)

@@ -24,7 +24,10 @@ final case class SensorNoise(
     driftS: Double = 60,
     dropout: Double = 0,
     outage: Option[Impairment.Outage] = None
-)
+):
+  /** Only what decides which readings are missing; None if none is. */
+  private[skein] def ofMissing: Option[SensorNoise] =
+    Option.when(dropout > 0 || outage.isDefined)(SensorNoise(text, dropout = dropout, outage = outage))
 
 object SensorNoise:
   import Assignments.number
@@ -66,7 +69,7 @@ object SensorNoise:
   private val MostDropout = 0.9
 
   /** Interval at which drift is drawn; in between it is linear. */
-  private[vehicle] val Tick: Span = Span.ofMillis(100)
+  private[skein] val Tick: Span = Span.ofMillis(100)
 
   /** A simulator that is silent for 10 s ends a flight. */
   private val LongestOutage = Span.ofSeconds(5)

@@ -3,7 +3,7 @@ package skein.forward
 import skein.policy.Action
 import skein.vehicle.{SensorNoise, VehicleModel}
 
-/** Vehicles whose readings have errors. They are simulated world by world. */
+/** Vehicles whose readings have errors, each vehicle in each world its own. */
 final case class SensedResponse(of: VelocityResponse, noise: SensorNoise) extends VelocityResponse:
   def create(): Vehicle = of.create()
 
@@ -13,5 +13,7 @@ final case class SensedResponse(of: VelocityResponse, noise: SensorNoise) extend
   override def regardsYaw: Boolean          = of.regardsYaw
   override def sensors: Option[SensorNoise] = Some(noise)
   override def predictor: VehicleModel[?]   = of.predictor
+
+  private[skein] override def body: VelocityResponse = of.body
 
   private[skein] override def predictorUnder(loop: VehicleModel[?]): VehicleModel[?] = of.predictorUnder(loop)

@@ -70,5 +70,8 @@ trait VelocityResponse:
   /** The model that best predicts such a vehicle. */
   def predictor: VehicleModel[?] = QuadrotorModel.AirSim
 
+  /** The vehicles themselves, without errors of readings. */
+  private[skein] def body: VelocityResponse = this
+
   /** The model that predicts such a vehicle under a loop that predicts by `loop`. */
   private[skein] def predictorUnder(loop: VehicleModel[?]): VehicleModel[?] = loop

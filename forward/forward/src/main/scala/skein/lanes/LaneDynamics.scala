@@ -23,7 +23,7 @@ import skein.lanes.timetable.{
   TimetableVehicles
 }
 import skein.units.Expect
-import skein.vehicle.ReducedModel
+import skein.vehicle.{ReducedModel, SensorNoise}
 
 /** Simulates a kind of vehicle with SIMD: with [[skein.lanes.timetable.Timetable]]s and, if it
   * [[fliesAlone]], also with separate delays in every world.
@@ -55,8 +55,8 @@ private[skein] object LaneDynamics:
     case PlantResponse(plant)   => PlantLanes.of(plant).map(PlantDynamics(_, inSpace, fliesLevel = true))
     case SpatialResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_, true, fliesLevel = false))
     case car: CarResponse       => PlantLanes.of(car.plant).map(PlantDynamics(_, inSpace, fliesLevel = false))
-    case _: SensedResponse      => Left("SIMD does not support errors of readings")
-    case _                      => Left("SIMD does not support the vehicle")
+    case SensedResponse(of, noise) => this.of(of, inSpace).map(SensedDynamics(_, noise))
+    case _                         => Left("SIMD does not support the vehicle")
 
   /** The dynamics of a model under a loop; if the loop predicts, SIMD must support its predictor too.
     *
@@ -72,14 +72,14 @@ private[skein] object LaneDynamics:
         case predictive: LoopTiming.Predictive =>
           for
             predictor <- LanePredictor.of(model.predictorUnder(predictive.predictor))
-            _         <- Expect.that(predictor.inSpace == model.isInstanceOf[SpatialResponse]):
+            _         <- Expect.that(predictor.inSpace == model.body.isInstanceOf[SpatialResponse]):
               "SIMD predicts climbs by a model in space, and level flight by another"
           yield PredictedDynamics(vehicles, predictor)
         case _ => Right(vehicles)
 
   /** Checks that all vehicles start high enough. Left says why SIMD does not support their start. */
   def isHighEnough(model: VelocityResponse, vehicles: Vector[RolloutAgent]): Either[String, Unit] =
-    val startsM = TeamResponses.of(vehicles, model).zip(vehicles).collect:
+    val startsM = TeamResponses.of(vehicles, model.body).zip(vehicles).collect:
       case (_: QuadrotorResponse, agent) => -agent.altitudeDownM
     Expect.that(startsM.forall(_ >= LeastAltitudeM)):
       s"SIMD simulates no ground: vehicles must start at $LeastAltitudeM m altitude or higher"
@@ -90,12 +90,29 @@ private[skein] object LaneDynamics:
 /** Adds a loop's predictions to the dynamics of vehicles. */
 private final class PredictedDynamics(model: LaneDynamics, by: LanePredictor) extends LaneDynamics:
   export model.{clock, deadTimeS, flights, handoverS, stepS}
+  override def sensors: Option[SensorNoise]            = model.sensors
   override def fliesAlone: Boolean                     = model.fliesAlone
   override def fliesLevel: Boolean                     = model.fliesLevel
   override def predictor: Option[LanePredictor]        = Some(by)
   def vehicles(agent: RolloutAgent): TimetableVehicles =
     val flown = model.vehicles(agent)
     flown.predicted = by.vehicles(agent)
+    flown
+
+/** Adds errors to the readings of vehicles with these dynamics. */
+private final class SensedDynamics(model: LaneDynamics, noise: SensorNoise) extends LaneDynamics:
+  export model.{clock, deadTimeS, handoverS, stepS}
+  override def fliesAlone: Boolean                     = model.fliesAlone
+  override def fliesLevel: Boolean                     = model.fliesLevel
+  override def sensors: Option[SensorNoise]            = Some(noise)
+  def vehicles(agent: RolloutAgent): TimetableVehicles =
+    val flown = model.vehicles(agent)
+    flown.senseBy(noise)
+    flown
+
+  private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles =
+    val flown = model.flights(agent, loop)
+    flown.senseBy(noise, loop.periodS)
     flown
 
 /** Dynamics by [[TimetablePlants]] and [[PlantFlights]]; a simple lag may also use [[LagVehicles]].

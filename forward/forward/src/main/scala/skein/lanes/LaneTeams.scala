@@ -79,6 +79,9 @@ private[lanes] final class EpisodeTeams(
     val (link, key) = (worlds.link(worldOf(0)), worlds.key(worldOf(0)))
     val timetable   = timetables.getOrMake(episodes.nameOf(link, key, form)):
       episodes.timetable(link, key, form)
+    if form.isSensed then
+      val seeds = worldOf.map(worlds.key(_).toLong)
+      for self <- flown.indices do flown(self).vehicles.seed(seeds, self)
     kernel.fly(timetable, filled)
 
 /** Teams whose worlds have separate delays.
@@ -92,7 +95,14 @@ private[lanes] final class LoopTeams(
     timing: LoopTiming,
     maxDelayS: Double
 ) extends LaneTeams(form):
-  private val loop = LoopLanes(timing, form.vehicles.map(_.predictor), form.durationS, maxDelayS, form.sees)
+  private val loop = LoopLanes(
+    timing,
+    form.vehicles.map(_.predictor),
+    form.durationS,
+    maxDelayS,
+    form.sees,
+    noise = form.vehicles.map(_.sensors)
+  )
   private val (flown, eye) = form.policies match
     case team: TeamLanes =>
       (LoopTeamAgents.of(first.engagement.agents, loop, form.vehicles, TeamViews(team)), None)

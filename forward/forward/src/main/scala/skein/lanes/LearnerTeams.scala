@@ -4,6 +4,7 @@ import skein.forward.{Delays, LoopTiming, VelocityResponse}
 import skein.lanes.policy.OpponentLanes
 import skein.lanes.score.{OfMoment, Scoreboard}
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, Timetables}
+import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 
 /** Teams with learners in many worlds by one timetable, with the results of [[TeamBatch]]. Allocates nothing
@@ -54,6 +55,10 @@ final class LearnerTeams private[lanes] (
     this.untilS = untilS
     next = 0
     dueUntil = 0
+    if form.isSensed then
+      // A world's errors must not depend on which others there are.
+      val seeds = Array.tabulate(WORLDS)(world => if world == 0 then draw else SplitMix64.seedOf(draw, world))
+      for self <- members.indices do members(self).vehicles.seed(seeds, self)
     kernel.start(timetable, worlds)
 
   def restart(world: Int, vehicle: Int, northM: Float, eastM: Float, headingRad: Float): Unit =
@@ -193,4 +198,8 @@ object LearnerTeams:
 
     private def timetableOf(form: TeamForm, draw: Long): Timetable =
       val key = keyOf(draw)
-      timetables.getOrMake(episodes.nameOf(link, key, form))(episodes.timetable(link, key, form))
+      // More draws than keys, so these are not kept.
+      if !episodes.areOne(form) && form.vehicles.exists(_.sensors.exists(_.ofMissing.isDefined)) then
+        episodes.timetable(link, key, form, Some(draw))
+      else
+        timetables.getOrMake(episodes.nameOf(link, key, form))(episodes.timetable(link, key, form))

@@ -28,6 +28,8 @@ private[lanes] final case class TeamForm(
   /** Whether some vehicle knows its opponent only through a camera. */
   def sees: Boolean = policies.eyes.nonEmpty
 
+  val isSensed: Boolean = vehicles.exists(_.sensors.isDefined)
+
   /** The reason why a GPU does not support such a team; None if it does. */
   def refusedByGpu: Option[String] = policies.refusedByGpu
     .orElse(Option.when(scores.hasEnd)("the GPU flies every episode to its duration"))
@@ -73,7 +75,7 @@ private[lanes] final class PreparedTeam(
 /** The episodes that teams share under one loop. */
 private[lanes] final class Episodes(timing: LoopTiming):
   /** Whether all worlds of a form have one episode, because they wait for their controller and so have no
-    * delays.
+    * delays. Errors of readings may differ; none is missing.
     */
   def areOne(form: TeamForm): Boolean = timing.isInstanceOf[LoopTiming.Paused] && !form.sees
 
@@ -82,7 +84,8 @@ private[lanes] final class Episodes(timing: LoopTiming):
     val delays = if areOne(form) then () else (link, key)
     (delays, form.vehicles, form.durationS, form.policies.needsMore, form.policies.eyes, form.scores.endsBy)
 
-  def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
+  /** @param sensorSeed see [[skein.lanes.timetable.Timetable.of]] */
+  def timetable(link: Delays, key: Int, form: TeamForm, sensorSeed: Option[Long] = None): Timetable =
     import form.policies.{eyes, needsMore}
     import form.scores.endsBy
-    Timetable.of(form.vehicles, form.durationS, timing, link, key, eyes, needsMore, endsBy)
+    Timetable.of(form.vehicles, form.durationS, timing, link, key, eyes, needsMore, endsBy, sensorSeed)

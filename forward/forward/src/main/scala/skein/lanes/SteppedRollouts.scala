@@ -30,7 +30,8 @@ private final class SteppedRollouts private (
   private var steppedTo = 0L
 
   /** The response for one world's rollout: creates handles of that world's vehicles. */
-  def vehiclesOf(world: Int): VelocityResponse = Places(world)
+  def vehiclesOf(world: Int): VelocityResponse =
+    model.sensors.fold(Places(world))(SensedResponse(Places(world), _))
 
   /** Simulates worlds to their end.
     *
@@ -99,16 +100,16 @@ private object SteppedRollouts:
   /** Creates rollouts for these vehicles; None if they cannot be stepped together. */
   def of(model: VelocityResponse, vehicles: Vector[RolloutAgent]): Option[SteppedRollouts] =
     val each = vehicles.size
-    model match
+    model.body match
       case stepped: SteppedResponse =>
         val worlds = worldsOf(model, each)
         val flown  = stepped.together(worlds * each)
-        Some(new SteppedRollouts(stepped, stepped.stepS, stepped.hoveredS, worlds, each, flown))
+        Some(new SteppedRollouts(model, stepped.stepS, stepped.hoveredS, worlds, each, flown))
       case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
         val worlds = worldsOf(model, each)
         Some(
           new SteppedRollouts(
-            quadrotor,
+            model,
             quadrotor.quadrotor.stepS,
             quadrotor.hoveredS,
             worlds,
@@ -120,7 +121,7 @@ private object SteppedRollouts:
 
   /** The engine for such vehicles; None if they cannot be stepped together. */
   def engine(model: VelocityResponse, vehicles: Vector[RolloutAgent]): Option[Engine] =
-    model match
+    model.body match
       case _: SteppedResponse => Some(Engine(Engine.Kind.Bodies, s"vehicles side by side; $Loops"))
       case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
         Some(Engine(
@@ -134,7 +135,7 @@ private object SteppedRollouts:
     *
     * @param each number of vehicles per world
     */
-  def worldsOf(model: VelocityResponse, each: Int): Int = model match
+  def worldsOf(model: VelocityResponse, each: Int): Int = model.body match
     case _: SteppedResponse => (MostVehicles / each).max(1)
     case _                  => LaneQuadrotors.VEHICLES / each
 

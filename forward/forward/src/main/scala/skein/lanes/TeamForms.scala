@@ -15,7 +15,7 @@ private[lanes] final class TeamForms(
     model: VelocityResponse,
     isReference: Boolean = false
 ):
-  private val inSpace     = model.isInstanceOf[SpatialResponse]
+  private val inSpace     = model.body.isInstanceOf[SpatialResponse]
   private val isPredicted = timing.isInstanceOf[LoopTiming.Predictive]
 
   private val flown: Either[String, LaneDynamics] =

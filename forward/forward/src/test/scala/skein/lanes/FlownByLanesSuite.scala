@@ -7,7 +7,7 @@ import skein.lanes.score.Judged
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
-import skein.vehicle.{ReducedModel, TiltModel}
+import skein.vehicle.{ReducedModel, SensorNoise, TiltModel}
 
 /** The table of docs/engines.md agrees with the engines, cell by cell; and worlds listed for SIMD or for
   * stepped vehicles have the scalar reference's results. Bodies of MuJoCo's have no column: they need a
@@ -33,6 +33,10 @@ class FlownByLanesSuite extends munit.FunSuite:
     LoopTiming.Stream(),
     LoopTiming.Predictive(predictor = model.predictor)
   )
+
+  private val noise =
+    SensorNoise.parse("position=0.2,velocity=0.1,drift=1/20s,dropout=5%,outage=0.3s/2s")
+      .fold(fail(_), identity)
 
   private val duel = Pair.paper.copy(
     evader = Pair.paper.evader.copy(startY = 2), // straight ahead a rounding error would decide where to turn
@@ -104,6 +108,20 @@ class FlownByLanesSuite extends munit.FunSuite:
       val said    = table((worlds, nameOf(timing)))(plant)
       val isTimed = shared || !timing.isInstanceOf[LoopTiming.Paused]
       assertEquals(word(engine), if said == "SIMD" && isTimed then "SIMD" else "scalar", engine)
+
+  for
+    (plant, model)   <- plants
+    timing           <- loops(model)
+    (worlds, shared) <- Seq("shared delays" -> true, "own delays" -> false)
+  do
+    test(
+      s"duels, $worlds, ${nameOf(timing)}, $plant, by readings with errors: the engine of the table, as the reference"
+    ):
+      val sensed = SensedResponse(model, noise)
+      val batch  = PairBatch(duel, timing, sensed, threads = 1)
+      val engine = batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text
+      assertEquals(word(engine), table((worlds, nameOf(timing)))(plant), engine)
+      agree(batch, timing, sensed, shared)
 
   for
     plant  <- Seq(Skating(0.4, 1.5), Tilting(0.95, 0.9, 0.2))

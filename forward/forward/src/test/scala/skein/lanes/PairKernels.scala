@@ -53,6 +53,7 @@ object PairKernels:
         self -> eye
     }.toMap
     val timetable = Timetable.of(both, duel.durationS, timing, link, key, sensors)
+    for self <- members.indices do members(self).vehicles.seed(Array.fill(WORLDS)(key.toLong), self)
     TimetableKernel(members.map(identity), scores).fly(timetable, WORLDS)
     PairKernel(duel, timing, captureM, members, scores)
 
@@ -83,6 +84,7 @@ object PairKernels:
       duel.durationS,
       links.map(_.maxS).max,
       cameras.nonEmpty,
+      vehicles.map(_.sensors),
       shortCut
     )
     val (members, eye) = Opponents.inLoop(agents, loop, vehicles, policies, cameras, newEye)

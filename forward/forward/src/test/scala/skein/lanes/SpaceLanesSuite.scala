@@ -7,7 +7,7 @@ import skein.scenario.*
 import skein.simd.WorldRandom
 import skein.testing.Optimised
 import skein.units.*
-import skein.vehicle.TiltModel
+import skein.vehicle.{SensorNoise, TiltModel}
 
 /** Compares SIMD with the scalar reference, for teams in three dimensions. */
 class SpaceLanesSuite extends munit.FunSuite, Optimised:
@@ -25,7 +25,25 @@ class SpaceLanesSuite extends munit.FunSuite, Optimised:
       )
     )
 
-  private def flown(timing: LoopTiming, over: Delays, shared: Boolean, isReference: Boolean) =
+  private val loops = Seq(
+    LoopTiming.Paused(),
+    LoopTiming.Sequential(),
+    LoopTiming.Futures(),
+    LoopTiming.Stream(),
+    LoopTiming.Predictive(predictor = model.predictor)
+  )
+
+  private val noisy =
+    SensorNoise.parse("position=0.2,velocity=0.1,drift=1/20s,dropout=5%,outage=0.5s/3s")
+      .map(SensedResponse(model, _)).fold(fail(_), identity)
+
+  private def flown(
+      timing: LoopTiming,
+      over: Delays,
+      shared: Boolean,
+      isReference: Boolean,
+      model: VelocityResponse = model
+  ) =
     val batch  = TeamBatch(timing, model, threads = 1, isReference = isReference)
     val engine = batch.engine(candidates.head, shared, Seq(over))
     assertEquals(engine.fliesByLanes, !isReference, engine.text)
@@ -37,13 +55,7 @@ class SpaceLanesSuite extends munit.FunSuite, Optimised:
       def candidate(world: Int): TeamCandidate = candidates(world)).values
 
   for
-    timing <- Seq(
-      LoopTiming.Paused(),
-      LoopTiming.Sequential(),
-      LoopTiming.Futures(),
-      LoopTiming.Stream(),
-      LoopTiming.Predictive(predictor = model.predictor)
-    )
+    timing         <- loops
     (linked, link) <- Seq[(String, Delays)]("none" -> DelayTable.none, "vpn" -> DelayTable.vpn)
     shared         <- Seq(true, false)
     if shared || timing != LoopTiming.Paused()
@@ -62,6 +74,23 @@ class SpaceLanesSuite extends munit.FunSuite, Optimised:
         )
       // Vehicles do climb, and differently in each world.
       assert(slow(0).max < -12 && slow(0).distinct.length > 4, slow(0).mkString(", "))
+
+  for timing <- loops; shared <- Seq(true, false) do
+    test(
+      s"${timing.productPrefix} by readings with errors, ${if shared then "shared" else "own"} delays: " +
+        "scores with SIMD are those of the scalar engine, to 5 mm"
+    ):
+      def of(isReference: Boolean, model: VelocityResponse) =
+        flown(timing, DelayTable.vpn, shared, isReference, model)
+      val (fast, slow) = (of(false, noisy), of(true, noisy))
+      for number <- fast.indices; world <- candidates.indices do
+        assertEqualsDouble(
+          fast(number)(world).toDouble,
+          slow(number)(world).toDouble,
+          5e-3,
+          s"number $number, world $world"
+        )
+      assertNotEquals(slow(1).toVector, of(true, model)(1).toVector)
 
   test("a policy that chooses between a velocity and an altitude by its observation is one formula"):
     val engine = TeamBatch(LoopTiming.Stream(), model).engine(candidates.head, true, Seq(DelayTable.vpn))

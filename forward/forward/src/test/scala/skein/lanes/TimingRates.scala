@@ -5,7 +5,7 @@ import skein.identify.Tilting
 import skein.policy.*
 import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
-import skein.vehicle.ReducedModel
+import skein.vehicle.{ReducedModel, SensorNoise}
 
 /** Measures the speed of each loop with SIMD, compared with the scalar engine: `forward/Test/runMain
   * skein.lanes.timingRates [text] [-text]`: on one thread, 60 s over `vpn` by default; only cases that
@@ -22,7 +22,8 @@ import skein.vehicle.ReducedModel
     "skating"   -> PlantResponse(Skating(0.4, 1.5)),
     "tilting"   -> PlantResponse(Tilting(0.95, 0.9, 0.2))
   )
-  val eye = GuideCamera.model
+  val eye     = GuideCamera.model
+  val sensors = Seq("", "position=0.3,velocity=0.1", "position=0.3,drift=1.5/60s,dropout=5%,outage=1s/20s")
   for
     shared        <- Seq(true, false)
     (name, model) <- models
@@ -38,13 +39,15 @@ import skein.vehicle.ReducedModel
       s" over $text" -> LinkDelays.checked(link, LinkDelays.packetsPerS(2, timing.periodS)).toOption.get
     mixed = if !shared && name == "lag" then (" over vpn-mixed" -> LinkDelays.vpnMixed) +: losing else Nil
     (linked, over) <- Seq[(String, Delays)]("" -> DelayTable.vpn) ++ mixed
+    text           <- if sees || linked.nonEmpty then Seq("") else sensors
     row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}${
         if sees then " by eye" else ""
-      }$linked"
+      }$linked${if text.isEmpty then "" else s" with $text"}"
     if only.forall(text => if text.startsWith("-") then !row.contains(text.drop(1)) else row.contains(text))
   do
+    val flown = if text.isEmpty then model else SensedResponse(model, SensorNoise.parse(text).toOption.get)
     val duel  = Pair.paper.copy(pursuer = Pair.paper.pursuer.copy(eye = Option.when(sees)(eye)))
-    val batch = PairBatch(duel, timing, model, threads = 1)
+    val batch = PairBatch(duel, timing, flown, threads = 1)
     def worlds(count: Int, from: Int): PairWorlds = new PairWorlds:
       def size: Int                       = count
       override def shareEpisodes: Boolean = shared
@@ -71,7 +74,7 @@ import skein.vehicle.ReducedModel
     val warm = System.nanoTime() + 4_000_000_000L
     while System.nanoTime() < warm do rate(count): Unit
     val lanes                        = Vector.fill(9)(rate(count)).max
-    val rollout                      = Rollout(duel.engagement, timing, over, model)
+    val rollout                      = Rollout(duel.engagement, timing, over, flown)
     def scalar(flights: Int): Double =
       val from = times.getCurrentThreadCpuTime
       for flight <- 1 to flights do rollout.fly(flight): Unit

@@ -5,7 +5,7 @@ import skein.lanes.LearnerWorlds
 import skein.signal.SplitMix64
 
 /** Environments that run simultaneously over one link: delays and losses of messages are equal in all of
-  * them. Mutable; one thread at a time.
+  * them, and so is which readings are missing. Mutable; one thread at a time.
   *
   * They begin a ''run'' together, which lasts as long as an episode. If an episode ends earlier, by a capture
   * or because the scenario has ended, the next begins immediately in the current run, and lasts until the

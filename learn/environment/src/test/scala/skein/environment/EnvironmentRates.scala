@@ -74,6 +74,8 @@ private[environment] object RateRow:
     val tower    = EnvironmentSettings(scenario = "tower", learners = "keeper", objective = "kept")
     Map(
       "duel"       -> (2, EnvironmentSettings()),
+      "noise"      -> (2, EnvironmentSettings(sensors = "position=0.3,velocity=0.1")),
+      "dropout"    -> (2, EnvironmentSettings(sensors = "position=0.3,drift=1.5/60s,dropout=5%")),
       "captures"   -> (2, duel),
       "evader"     -> (2, duel.copy(learners = "evader")),
       "both"       -> (2, duel.copy(learners = "both")),

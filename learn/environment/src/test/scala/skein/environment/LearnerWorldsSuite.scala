@@ -57,6 +57,19 @@ class LearnerWorldsSuite extends munit.FunSuite:
     assertEquals(seen("position=1", 2), seen("position=1", 2))
     assertNotEquals(seen("position=1", 2), seen("position=1", 2 + 256))
 
+  test("with SIMD, each world of a run has its own errors of readings"):
+    val side     = LearnerSide.of(all.copy(sensors = "position=1", loop = "paused")).fold(fail(_), identity)
+    val worlds   = EnvironmentBatch.worlds(side, side.engine(None), side.turns.head, None, 2)
+    val observed = Array.ofDim[Float](side.settings.space.inputs * LearnerWorlds.Most)
+    worlds.start(7, 6)
+    for world <- 0 until 2; vehicle <- side.names.indices do
+      worlds.restart(world, vehicle, 9f * vehicle, 0, 0)
+    assert(worlds.flyOn())
+    worlds.observe(0, observed)
+    assertNotEquals(observed(0), observed(1))
+
+  private val noisy = all.copy(sensors = "position=0.3,velocity=0.1,drift=1/20s,dropout=3%,outage=0.3s/4s")
+
   for
     (settings, toleranceM) <- Seq(
       all                                                                                         -> 2e-3,
@@ -74,6 +87,12 @@ class LearnerWorldsSuite extends munit.FunSuite:
       all.copy(scenario = "tower", learners = "keeper", objective = "kept")                       -> 2e-2,
       all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt")   -> 2e-2,
       all.copy(climbMps = 2)                                                                      -> 5e-3,
+      noisy                                                                                       -> 2e-3,
+      noisy.copy(learners = "both", loop = "sequential")                                          -> 2e-3,
+      noisy.copy(learners = "both", loop = "predictive", climbMps = 2)                            -> 5e-3,
+      noisy.copy(scenario = "surround", learners = "all", loop = "paused")                        -> 2e-3,
+      noisy.copy(scenario = "meeting", learners = "pursuers", loop = "futures")                   -> 2e-3,
+      noisy.copy(scenario = "car-chase")                                                          -> 2e-3,
       all.copy(climbMps = 2, learners = "both", loop = "predictive")                              -> 5e-3,
       all.copy(scenario = "surround", learners = "all", climbMps = 3, loop = "paused")            -> 5e-3,
       all.copy(scenario = "tower", learners = "keeper", climbMps = 1, loop = "futures")           -> 5e-3,
@@ -95,7 +114,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
       val (seen, sums)     = flown(side, learning, EnvironmentBatch.worlds(side, engine, learning, None, 3))
       val (truth, scalars) = flown(side, learning, LearnerRollout(side, side.team(learning, None), learning))
       assertEquals(seen.map(_.size), truth.map(_.size))
-      assert(seen.forall(_.sizeIs > 20), seen.map(_.size))
+      assert(seen.forall(_.sizeIs > 15), seen.map(_.size))
       for (ours, theirs) <- seen.zip(truth); (one, other) <- ours.zip(theirs); (x, y) <- one.zip(other) do
         assertEqualsDouble(
           x,

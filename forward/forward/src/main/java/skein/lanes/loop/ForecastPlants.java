@@ -59,7 +59,7 @@ final class ForecastPlants implements ForecastVehicles {
     count = lanes.count();
     from = new float[count * WORLDS];
     to = new float[count * WORLDS];
-    remembers = !correction.isTold();
+    remembers = !correction.isTold() || lanes.inSpace();
     held = new float[from.length];
     correct = correction.call();
     correct.inputs(0, count, from, 0);
@@ -86,6 +86,14 @@ final class ForecastPlants implements ForecastVehicles {
   public void start(float[] startZ) {
     if (lanes.inSpace()) lanes.restInSpace(held, 0, startZ);
     else lanes.rest(held, 0);
+  }
+
+  @Override
+  public void rest(int[] first, float[] downM) {
+    lanes.restInSpace(to, 0, downM);
+    for (int number = 0; number < held.length; number += WORLDS)
+      for (int world = 0; world < WORLDS; world++)
+        if (first[world] > 0) held[number + world] = to[number + world];
   }
 
   @Override

@@ -60,6 +60,13 @@ final class ForecastTrack {
   /** 1 in worlds whose newest reading became known in this period, else 0. */
   final int[] fresh = new int[WORLDS];
 
+  /** 1 in worlds whose present reading is the first, else 0; and the altitude, m down, that their vehicles
+   * are assumed to hold until their first command. Only of readings with errors in space.
+   */
+  final int[] first = new int[WORLDS];
+
+  final float[] restZ = new float[WORLDS];
+
   // The period of the oldest stored command, which was in effect at the reading; and the direction before it.
   private final int[] head = new int[WORLDS];
   private final Directions before, prior;
@@ -223,6 +230,23 @@ final class ForecastTrack {
     lay(row, arrived.vectors, arrived.receivedAt(), arrived.receivedAt(), arrived.toS(), arrived.fromS());
     aimAt(row, arrived.madeAt());
     return true;
+  }
+
+  /** Holds the altitude of the present readings, in worlds where they are the first.
+   *
+   * @return whether there is one
+   */
+  boolean rest(float[] read) {
+    if (!inSpace) return false;
+    boolean any = false;
+    for (int world = 0; world < WORLDS; world++) {
+      boolean is = knownRow[world] < 0 && arrived.enters[world] > 0;
+      first[world] = is ? 1 : 0;
+      any |= is;
+      restZ[world] = read[LaneVehicles.SEEN_Z + world];
+      if (is) for (Directions each : new Directions[] {before, turn}) each.level(world, WORLDS, restZ[world]);
+    }
+    return any;
   }
 
   /** Fixes the turns that took effect before the present readings, from what was known at their arrival. */

@@ -17,6 +17,13 @@ interface ForecastVehicles {
    */
   default void start(float[] startZ) {}
 
+  /** Resets worlds before their first reading.
+   *
+   * @param first 1 in these worlds, else 0
+   * @param downM altitudes of all worlds, m down, which vehicles hold until their first command
+   */
+  default void rest(int[] first, float[] downM) {}
+
   /** Simulates the track from the previous reading, and corrects the state by this one.
    *
    * @param enters 1 in worlds with a reading, else 0

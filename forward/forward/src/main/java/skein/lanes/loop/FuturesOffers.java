@@ -49,6 +49,9 @@ final class FuturesOffers extends LaneOffers {
   /** For each vehicle, the delay of a task's request, then of its answer. */
   private final int[][] drawn;
 
+  /** The vehicle that has no reading for a drawn task, if readings may be missing. */
+  private final int[] missingOf = new int[WORLDS];
+
   /** The oldest period whose offers may still be pending, and the next period to draw. */
   private int oldest, next;
 
@@ -66,8 +69,9 @@ final class FuturesOffers extends LaneOffers {
   private final LaneVectors taken = new LaneVectors();
 
   /** @param maxDelayS the longest one-way delay of any link */
-  FuturesOffers(LoopTiming.Futures timing, int vehicles, double maxDelayS) {
-    super(vehicles, new LaneDelays(), false, (int) Math.ceil(AHEAD_S / timing.periodS()));
+  FuturesOffers(
+      LoopTiming.Futures timing, int vehicles, double maxDelayS, MissingReadings missing) {
+    super(vehicles, new LaneDelays(), missing, false, (int) Math.ceil(AHEAD_S / timing.periodS()));
     double periodS = timing.periodS(),
         taskS = vehicles * Math.min(timing.asking().timeoutS(), 2 * maxDelayS);
     periodGrains = LaneViews.grains(periodS);
@@ -112,7 +116,9 @@ final class FuturesOffers extends LaneOffers {
     Arrays.fill(places, LaneDelays.placeOf(step));
     for (int agent = 0; agent < vehicles; agent++) {
       begin(agent, beginAt[agent][slot]);
-      delays.drawInTurn(ALL, places, agent, (long) step * periodGrains, beginAt[agent][slot], drawn);
+      long stepBegin = (long) step * periodGrains;
+      delays.drawInTurn(ALL, places, agent, stepBegin, beginAt[agent][slot], drawn);
+      if (missing.areSome) missing.find(ALL, beginAt[agent][slot], stepBegin, drawn, missingOf);
       end(beginAt[agent][slot], end[agent][slot]);
     }
   }
@@ -149,6 +155,7 @@ final class FuturesOffers extends LaneOffers {
             back = IntVector.fromArray(INTS, drawn[2 * v + 1], i).add(there);
         over = over.add(back.min(timeout), offers);
         offers = offers.andNot(back.compare(GT, timeout));
+        if (missing.areSome) offers = offers.andNot(IntVector.fromArray(INTS, missingOf, i).compare(EQ, v));
       }
       none.blend(over, offers).intoArray(ends, i);
       IntVector more = past.blend(over, goes);

@@ -16,7 +16,7 @@ import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
 /** The views of many worlds under the {@code stream} loop, over links on which few views are regular, such as
- * those that lose packets. They are equal to those of {@link LaneViews}, in equal rounds, but computed with
+ * those that lose packets, or where readings may be missing. They are equal to those of {@link LaneViews}, in equal rounds, but computed with
  * SIMD, period by period, as far ahead as the next view of each world needs. The scalar reference is {@code
  * skein.forward.JoiningRun}.
  */
@@ -39,9 +39,10 @@ final class JoinedViews {
 
   private final int[] oldest = new int[WORLDS / LANES];
 
-  // By vehicle: of the newest reading, when it was sampled and requested, in grains from the front's begin,
-  // and the request's index in the random sequence; and 1 if it is not part of a view yet.
-  private final int[][] newestAt, newestAsked, newestPlace, isNew;
+  // By vehicle: of the newest reading, when it was sampled, in grains from the front's begin, the period in
+  // which it was requested, and the request's index in the random sequence; and 1 if it is not part of a view
+  // yet.
+  private final int[][] newestAt, newestSent, newestPlace, isNew;
 
   // End of the patience, in grains from the front's begin, NONE if no reading waits for others; and 1 after
   // the first view.
@@ -76,16 +77,21 @@ final class JoinedViews {
   final int[] nextAt = new int[WORLDS];
 
   /** @param maxDelayS the longest one-way delay of any link */
-  JoinedViews(LoopTiming.Stream timing, int vehicles, double maxDelayS, LaneDelays delays) {
+  JoinedViews(
+      LoopTiming.Stream timing,
+      int vehicles,
+      double maxDelayS,
+      LaneDelays delays,
+      MissingReadings missing) {
     this.vehicles = vehicles;
     double periodS = timing.periodS();
     horizon = 2 + (int) Math.ceil(LoopLanes.MostS() / periodS);
     ahead = Math.min(LaneViews.MOST_AHEAD, timing.asking().window());
     periodGrains = LaneViews.grains(periodS);
     patienceGrains = LaneViews.grains(timing.patienceS());
-    requests = new PeriodicRequests(periodS, timing.asking(), vehicles, maxDelayS, delays);
+    requests = new PeriodicRequests(periodS, timing.asking(), vehicles, maxDelayS, delays, missing);
     newestAt = new int[vehicles][WORLDS];
-    newestAsked = new int[vehicles][WORLDS];
+    newestSent = new int[vehicles][WORLDS];
     newestPlace = new int[vehicles][WORLDS];
     isNew = new int[vehicles][WORLDS];
     roundsOf = new int[Integer.highestOneBit(2 * horizon + 1)];
@@ -103,7 +109,7 @@ final class JoinedViews {
     Arrays.fill(patienceEnd, NONE);
     for (int v = 0; v < vehicles; v++) {
       Arrays.fill(newestAt[v], PAST);
-      Arrays.fill(newestAsked[v], PAST);
+      Arrays.fill(newestSent[v], -1);
       Arrays.fill(isNew[v], 0);
     }
   }
@@ -162,10 +168,8 @@ final class JoinedViews {
     }
     IntVector past = IntVector.broadcast(INTS, PAST), none = IntVector.broadcast(INTS, NONE);
     for (int i = 0; i < WORLDS; i += LANES) {
-      for (int v = 0; v < vehicles; v++) {
+      for (int v = 0; v < vehicles; v++)
         IntVector.fromArray(INTS, newestAt[v], i).sub(periodGrains).max(past).intoArray(newestAt[v], i);
-        IntVector.fromArray(INTS, newestAsked[v], i).sub(periodGrains).max(past).intoArray(newestAsked[v], i);
-      }
       IntVector end = IntVector.fromArray(INTS, patienceEnd, i);
       end.sub(periodGrains, end.compare(LT, none)).intoArray(patienceEnd, i);
     }
@@ -241,7 +245,7 @@ final class JoinedViews {
       IntVector before = IntVector.fromArray(INTS, newestAt[v], i),
           newest = before,
           place = IntVector.fromArray(INTS, newestPlace[v], i),
-          asked = IntVector.fromArray(INTS, newestAsked[v], i),
+          sent = IntVector.fromArray(INTS, newestSent[v], i),
           beyond = untilMade.add(1, untilOf.compare(GE, v));
       for (int step = from; step <= front; step++) {
         int slot = requests.slot(step), shift = (step - front) * periodGrains;
@@ -255,12 +259,12 @@ final class JoinedViews {
         if (takes.anyTrue()) {
           newest = newest.blend(reading, takes);
           place = place.blend(IntVector.fromArray(INTS, requests.places[v][slot], i), takes);
-          asked = asked.blend(IntVector.fromArray(INTS, requests.asked[v][slot], i).add(shift), takes);
+          sent = sent.blend(IntVector.fromArray(INTS, requests.sentIn[v][slot], i), takes);
         }
       }
       newest.intoArray(newestAt[v], i);
       place.intoArray(newestPlace[v], i);
-      asked.intoArray(newestAsked[v], i);
+      sent.intoArray(newestSent[v], i);
       IntVector.fromArray(INTS, isNew[v], i).blend(1, newest.compare(NE, before)).intoArray(isNew[v], i);
     }
     begun.blend(1, joins).intoArray(isBegun, i);
@@ -272,36 +276,35 @@ final class JoinedViews {
   /** Determines the period and the round in which each joined view is offered, as {@link LaneViews} does. */
   private void offer(int i) {
     VectorMask<Integer> joins = IntVector.fromArray(INTS, joinsAt, 0).compare(LT, NONE);
-    IntVector asked = IntVector.fromArray(INTS, newestAsked[0], i);
-    for (int v = 1; v < vehicles; v++) asked = asked.max(IntVector.fromArray(INTS, newestAsked[v], i));
     IntVector last = IntVector.fromArray(INTS, lastRow, i),
         before = IntVector.fromArray(INTS, lastOffer, i),
         number = IntVector.fromArray(INTS, lastRound, i),
-        sent = IntVector.broadcast(INTS, front);
-    for (VectorMask<Integer> is = asked.compare(LT, 0); is.anyTrue(); is = asked.compare(LT, 0)) {
-      sent = sent.sub(1, is);
-      asked = asked.add(periodGrains, is);
-    }
-    sent = sent.max(last);
+        sent = last;
+    for (int v = 0; v < vehicles; v++) sent = sent.max(IntVector.fromArray(INTS, newestSent[v], i));
     last.blend(sent, joins).intoArray(lastRow, i);
-    before.blend(sent, joins).intoArray(lastOffer, i);
     number
         .blend(number.add(1).blend(0, sent.compare(NE, before)), joins)
         .intoArray(lastRound, i);
-    for (long open = joins.and(before.compare(LT, sent.sub(EARLY))).toLong(); open != 0; open &= open - 1) {
+    VectorMask<Integer> early = joins.and(before.compare(LT, sent.sub(EARLY))), mayStay = early;
+    IntVector begin = sent.sub(front).mul(periodGrains);
+    for (int v = 0; v < vehicles; v++)
+      mayStay =
+          mayStay
+              .and(IntVector.fromArray(INTS, newestSent[v], i).compare(EQ, sent))
+              .and(IntVector.fromArray(INTS, newestAt[v], i).sub(begin).compare(LT, periodGrains));
+    before.blend(sent, joins).sub(EARLY, early).intoArray(lastOffer, i);
+    for (long open = mayStay.toLong(); open != 0; open &= open - 1) {
       int lane = Long.numberOfTrailingZeros(open), world = i + lane;
-      if (!isRegular(world, lastRow[world], joinsAt[lane])) lastOffer[world] -= EARLY;
+      if (isRegular(world, lastRow[world], joinsAt[lane])) lastOffer[world] += EARLY;
     }
   }
 
-  /** See {@link ViewSource#isRegular}. */
+  /** See {@link ViewSource#isRegular}; all vehicles were asked and sampled within the period. */
   private boolean isRegular(int world, int row, int at) {
     int begin = (row - front) * periodGrains, place = LaneDelays.placeOf(row);
     if (at >= begin + ahead * periodGrains) return false;
     for (int v = 0; v < vehicles; v++) {
-      if (newestPlace[v][world] != place
-          || newestAsked[v][world] < begin
-          || newestAt[v][world] >= begin + periodGrains) return false;
+      if (newestPlace[v][world] != place) return false;
       for (int step = row - 1; step >= 0 && step > front - requests.ring; step--)
         if (end(world, v, step) > at) return false;
       for (int step = row + 1; step <= front; step++)

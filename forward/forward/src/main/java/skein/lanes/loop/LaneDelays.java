@@ -249,42 +249,47 @@ final class LaneDelays {
   }
 
   private void lose(LaneVectors vectors, int line, long begin, int[] sentAt, int[] values) {
+    if (!losesByTime) {
+      for (int k = 0; k < vectors.count; k++) await(vectors.first[k], values);
+      return;
+    }
     int[] from = calmFrom[calmOf(line)], until = calmUntil[calmOf(line)];
     IntVector coarse = IntVector.broadcast(INTS, (int) (begin >> COARSE));
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       VectorMask<Integer> mayLose =
           IntVector.fromArray(INTS, bits, i).and(LOW_BITS).compare(LT, IntVector.fromArray(INTS, lossThreshold, i));
-      if (!losesByTime) {
-        await(i, mayLose, values);
-      } else {
-        // The sum of two times without their low bits is that of the sum, or one less.
-        IntVector at = IntVector.fromArray(INTS, sentAt, i).lanewise(ASHR, COARSE).add(coarse);
-        mayLose =
-            mayLose
-                .or(at.compare(LE, IntVector.fromArray(INTS, from, i)))
-                .or(at.compare(GE, IntVector.fromArray(INTS, until, i).sub(1)));
-        // Without a message there is no time.
-        mayLose = mayLose.and(IntVector.fromArray(INTS, sentAt, i).compare(NE, Integer.MAX_VALUE));
-        for (long lanes = mayLose.toLong(); lanes != 0; lanes &= lanes - 1)
-          lose(i + Long.numberOfTrailingZeros(lanes), line, begin, sentAt, values);
-      }
+      // The sum of two times without their low bits is that of the sum, or one less.
+      IntVector at = IntVector.fromArray(INTS, sentAt, i).lanewise(ASHR, COARSE).add(coarse);
+      mayLose =
+          mayLose
+              .or(at.compare(LE, IntVector.fromArray(INTS, from, i)))
+              .or(at.compare(GE, IntVector.fromArray(INTS, until, i).sub(1)));
+      // Without a message there is no time.
+      mayLose = mayLose.and(IntVector.fromArray(INTS, sentAt, i).compare(NE, Integer.MAX_VALUE));
+      for (long lanes = mayLose.toLong(); lanes != 0; lanes &= lanes - 1)
+        lose(i + Long.numberOfTrailingZeros(lanes), line, begin, sentAt, values);
     }
   }
 
-  /** Adds {@link LossyDelays#waitNs} where a message is lost, whatever the time. */
-  private void await(int i, VectorMask<Integer> lost, int[] values) {
-    IntVector drawn = IntVector.fromArray(INTS, bits, i), wait = IntVector.fromArray(INTS, timeout, i);
+  /** Adds {@link LossyDelays#waitNs} where messages are lost, whatever the time. */
+  private void await(int i, int[] values) {
+    IntVector drawn = IntVector.fromArray(INTS, bits, i),
+        threshold = IntVector.fromArray(INTS, lossThreshold, i),
+        most = IntVector.fromArray(INTS, mostTries, i),
+        wait = IntVector.fromArray(INTS, timeout, i),
+        value = IntVector.fromArray(INTS, values, i);
+    VectorMask<Integer> lost = drawn.and(LOW_BITS).compare(LT, threshold);
     for (int tries = 1; lost.anyTrue(); tries++) {
-      IntVector.fromArray(INTS, values, i).add(wait, lost).intoArray(values, i);
+      value = value.add(wait, lost);
       wait = wait.add(wait);
-      IntVector a = drawn.add(tries * WorldRandom.STRIDE);
-      a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(WorldRandom.MULTIPLIER_1);
-      a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(WorldRandom.MULTIPLIER_2);
-      lost =
-          lost.and(a.lanewise(XOR, a.lanewise(LSHR, 16)).and(LOW_BITS).compare(LT, IntVector.fromArray(INTS, lossThreshold, i)))
-              .and(IntVector.fromArray(INTS, mostTries, i).compare(GT, tries));
+      IntVector one = drawn.add(tries * WorldRandom.STRIDE);
+      one = one.lanewise(XOR, one.lanewise(LSHR, 16)).mul(WorldRandom.MULTIPLIER_1);
+      one = one.lanewise(XOR, one.lanewise(LSHR, 15)).mul(WorldRandom.MULTIPLIER_2);
+      one = one.lanewise(XOR, one.lanewise(LSHR, 16)).and(LOW_BITS);
+      lost = lost.and(one.compare(LT, threshold)).and(most.compare(GT, tries));
     }
+    value.intoArray(values, i);
   }
 
   private void lose(int world, int line, long begin, int[] sentAt, int[] values) {

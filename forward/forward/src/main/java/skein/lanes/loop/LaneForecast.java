@@ -103,7 +103,8 @@ public final class LaneForecast {
 
   private void enter(ForecastTrack track, ForecastVehicles by, LaneVehicles read) {
     ArrivedReadings arrived = track.arrived;
-    read.read(row, arrived.vectors, arrived.enters, arrived.madeAt(), arrived.enters, true);
+    read.sense(row, arrived.vectors, arrived.enters, arrived.madeAt(), arrived.enters, true);
+    if (read.isSensed() && track.rest(read.state)) by.rest(track.first, track.restZ);
     by.enter(arrived.vectors, track, arrived.enters, read.state);
   }
 

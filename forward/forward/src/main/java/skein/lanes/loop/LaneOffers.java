@@ -30,6 +30,8 @@ public abstract class LaneOffers {
 
   final int vehicles;
 
+  final MissingReadings missing;
+
   /** Whether an offer goes to all vehicles, or else to one. */
   final boolean together;
 
@@ -55,8 +57,10 @@ public abstract class LaneOffers {
    */
   final int[][] place;
 
-  LaneOffers(int vehicles, LaneDelays delays, boolean together, int rowsAhead) {
+  LaneOffers(
+      int vehicles, LaneDelays delays, MissingReadings missing, boolean together, int rowsAhead) {
     this.vehicles = vehicles;
+    this.missing = missing;
     sampledAt = new int[vehicles][];
     fresh = new int[vehicles][];
     place = new int[vehicles][];

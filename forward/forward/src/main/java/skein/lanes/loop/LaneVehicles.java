@@ -10,9 +10,11 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import skein.forward.RolloutAgent;
+import skein.lanes.plant.LaneSensors;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 import skein.lanes.policy.VehicleNumbers;
+import skein.vehicle.SensorNoise;
 
 /** The vehicles of one role in many worlds, whose commands take effect at different times in each. Times
  * count from the start of a period; periods are processed in order. The subclasses {@link LagVehicles} and
@@ -47,6 +49,12 @@ public abstract class LaneVehicles {
   /** Whether commands and readings have a vertical part. */
   public final boolean inSpace;
 
+  /** Errors of readings; null if these are true. The times of readings, ns, are negative where none is made.
+   */
+  private LaneSensors sensors;
+
+  private final long[] sensedNs = new long[WORLDS];
+  private int periodGrains;
 
   /** @param own number of the subclass's floats per world, from {@link #OWN} on */
   LaneVehicles(RolloutAgent agent, int own, boolean inSpace) {
@@ -86,6 +94,53 @@ public abstract class LaneVehicles {
    */
   abstract void read(
       int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity);
+
+  public final void senseBy(SensorNoise noise, double periodS) {
+    sensors = new LaneSensors(noise, inSpace);
+    periodGrains = LaneViews.grains(periodS);
+  }
+
+  final boolean isSensed() {
+    return sensors != null;
+  }
+
+  /** Sets the seeds of the errors of the next episode's readings, if there are any.
+   *
+   * @param vehicle index of these vehicles
+   */
+  final void seed(int[] worldKeys, int vehicle) {
+    if (sensors != null) sensors.start(Arrays.stream(worldKeys).asLongStream().toArray(), vehicle);
+  }
+
+  /** Reads the vehicles as {@link #read} does, with the errors of their sensors. */
+  final void sense(
+      int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity) {
+    read(row, vectors, joined, at, fresh, withVelocity);
+    if (sensors == null) return;
+    long begin = (long) row * periodGrains;
+    for (int k = 0; k < vectors.count; k++) {
+      int from = vectors.first[k], to = from + LANES;
+      boolean any = false;
+      for (int i = from; i < to; i++) {
+        boolean is = fresh == null ? joined[i] != LaneOffers.NONE : fresh[i] > 0;
+        any |= is;
+        sensedNs[i] = is ? (begin + at[i]) * LaneViews.GRAIN_NS : -1;
+      }
+      if (any) sense(from, to, withVelocity);
+    }
+  }
+
+  private void sense(int from, int to, boolean withVelocity) {
+    sensors.at(sensedNs, from, to);
+    sensors.add(LaneSensors.NORTH, sensedNs, from, to, state, SEEN_X);
+    sensors.add(LaneSensors.EAST, sensedNs, from, to, state, SEEN_Y);
+    if (inSpace) sensors.add(LaneSensors.DOWN, sensedNs, from, to, state, SEEN_Z);
+    // In space, velocities are always read.
+    if (!withVelocity && !inSpace) return;
+    sensors.add(LaneSensors.NORTH_MPS, sensedNs, from, to, state, SEEN_VX);
+    sensors.add(LaneSensors.EAST_MPS, sensedNs, from, to, state, SEEN_VY);
+    if (inSpace) sensors.add(LaneSensors.DOWN_MPS, sensedNs, from, to, state, SEEN_VZ);
+  }
 
   /** Simulates up to a period's start.
    *

@@ -75,6 +75,7 @@ public final class LaneViews {
   private TabledDelays[] links;
 
   final LaneDelays delays = new LaneDelays();
+  final MissingReadings missing;
 
   // By period modulo ROWS: times at which the requests reach the vehicles, of the first and the last answer,
   // and of the next period's last answer.
@@ -120,8 +121,14 @@ public final class LaneViews {
   private boolean more;
 
   LaneViews(
-      LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, boolean shortCut) {
+      LoopTiming.Stream timing,
+      int vehicles,
+      double durationS,
+      double maxDelayS,
+      boolean shortCut,
+      MissingReadings missing) {
     this.vehicles = vehicles;
+    this.missing = missing;
     reached = new int[ROWS][vehicles][WORLDS];
     place = new int[vehicles][WORLDS];
     isFresh = new int[vehicles][WORLDS];
@@ -131,7 +138,7 @@ public final class LaneViews {
     periodGrains = grains(timing.periodS());
     patienceGrains = grains(timing.patienceS());
     latestGrains = Math.min(grains(timing.asking().timeoutS()), ahead * periodGrains - 1);
-    newSource = () -> ViewSource.apply(timing, vehicles, durationS, maxDelayS, ahead);
+    newSource = () -> ViewSource.apply(timing, missing.noises(), durationS, maxDelayS, ahead);
   }
 
   public static int grains(double seconds) {
@@ -161,6 +168,10 @@ public final class LaneViews {
    */
   private void ask(int step) {
     for (int vehicle = 0; vehicle < vehicles; vehicle += 2) answer(vehicle, step);
+    if (missing.areSome)
+      // Without an answer from each vehicle, the next step's check finds this one irregular.
+      for (int v = 0; v < vehicles; v++)
+        missing.replace(v, (long) step * periodGrains, reached[step % ROWS][v], last[step % ROWS], LATEST);
     if (step > 0) {
       lookedAt = step;
       for (int i = 0; i < irregularLanes.length; i++)

@@ -39,6 +39,11 @@ public final class LoopKernel {
   private static final LaneVectors ALL = LaneVectors.all();
   private final int[][] readAt;
 
+  /** Earliest sampling time, in grains from the period's start, 4 to 6 s ago: earlier ones count as this, so
+   * that the time from it to a decision fits into an int.
+   */
+  private final int oldestAt;
+
   /** Vectors in which some world has an offer in this round. */
   private final LaneVectors vectors = new LaneVectors();
 
@@ -54,6 +59,7 @@ public final class LoopKernel {
     periodS = loop.periodS();
     steps = (int) Math.round(loop.durationS() / periodS);
     readAt = new int[agents.length][WORLDS];
+    oldestAt = Integer.MIN_VALUE + (int) Math.min(1L << 30, Math.max(1L << 29, 4L * LaneViews.grains(periodS)));
     boolean needsVelocity = scores.needsVelocity(), needsAges = scores.needsAges();
     for (LaneAgents each : agents) {
       float[] state = each.vehicles.state;
@@ -74,8 +80,12 @@ public final class LoopKernel {
    * @param links the link of each world; their longest delay must not exceed that of the loop
    */
   public void fly(int[] worldKeys, TabledDelays[] links) {
+    if (offers.missing.areSome) offers.missing.start(worldKeys);
     offers.start(worldKeys, links);
-    for (LaneAgents each : agents) each.start();
+    for (LaneAgents each : agents) {
+      each.start();
+      each.vehicles.seed(worldKeys, each.self);
+    }
     scores.start(WORLDS);
     Arrays.fill(begunS, Double.POSITIVE_INFINITY);
     for (int row = 0; row < steps; row++) {
@@ -108,7 +118,7 @@ public final class LoopKernel {
 
   private void read(int row, LaneAgents agent) {
     int[] at = offers.sampledAt[agent.self], fresh = offers.fresh[agent.self], held = readAt[agent.self];
-    agent.vehicles.read(row, isForecast ? ALL : vectors, offers.joinedAt, at, fresh, withVelocity);
+    agent.vehicles.sense(row, isForecast ? ALL : vectors, offers.joinedAt, at, fresh, withVelocity);
     if (withAges)
       for (int i = 0; i < WORLDS; i += LANES) {
         IntVector now = IntVector.fromArray(INTS, at, i), before = IntVector.fromArray(INTS, held, i);
@@ -140,7 +150,7 @@ public final class LoopKernel {
   private void growOlder() {
     int period = LaneViews.grains(periodS);
     for (int[] each : readAt)
-      for (int i = 0; i < WORLDS; i++) each[i] = Math.max(each[i] - period, Integer.MIN_VALUE / 2);
+      for (int i = 0; i < WORLDS; i++) each[i] = Math.max(each[i] - period, oldestAt);
   }
 
   private void score(int row) {

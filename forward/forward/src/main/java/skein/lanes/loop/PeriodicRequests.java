@@ -1,6 +1,7 @@
 package skein.lanes.loop;
 
 import static jdk.incubator.vector.VectorOperators.ASHR;
+import static jdk.incubator.vector.VectorOperators.GE;
 import static jdk.incubator.vector.VectorOperators.GT;
 import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LSHL;
@@ -30,6 +31,7 @@ final class PeriodicRequests {
   private static final LaneVectors ALL = LaneVectors.all();
 
   private final LaneDelays delays;
+  private final MissingReadings missing;
   private final int periodGrains, timeoutGrains, window;
 
   /** Number of periods that are stored, a power of two: enough for a request that waits and then times
@@ -51,15 +53,22 @@ final class PeriodicRequests {
    */
   final int[][][] asked, read, answered;
 
-  /** By vehicle and {@link #slot}: index of the request in the random sequence; and when it ends, past if it
-   * was missed.
+  /** By vehicle and {@link #slot}: index of the request in the random sequence; the period in which it is
+   * sent, from which it may have waited; and when it ends, past if it was missed.
    */
-  final int[][][] places, ends;
+  final int[][][] places, sentIn, ends;
 
   private final int[] there = new int[WORLDS], back = new int[WORLDS];
 
   /** @param maxDelayS the longest one-way delay of any link */
-  PeriodicRequests(double periodS, Asking asking, int vehicles, double maxDelayS, LaneDelays delays) {
+  PeriodicRequests(
+      double periodS,
+      Asking asking,
+      int vehicles,
+      double maxDelayS,
+      LaneDelays delays,
+      MissingReadings missing) {
+    this.missing = missing;
     this.delays = delays;
     periodGrains = LaneViews.grains(periodS);
     timeoutGrains = LaneViews.grains(asking.timeoutS());
@@ -74,6 +83,7 @@ final class PeriodicRequests {
     answered = new int[vehicles][ring][WORLDS];
     places = new int[vehicles][ring][WORLDS];
     ends = new int[vehicles][ring][WORLDS];
+    sentIn = new int[vehicles][ring][WORLDS];
   }
 
   /** Resets to the start of an episode over these links. */
@@ -102,8 +112,9 @@ final class PeriodicRequests {
     int slot = slot(period), line = Delays.question(0, vehicle);
     int[] asks = asked[vehicle][slot], reads = read[vehicle][slot], answers = answered[vehicle][slot];
     int[] at = places[vehicle][slot], end = ends[vehicle][slot];
+    Arrays.fill(sentIn[vehicle][slot], period);
     if (mayWait) {
-      await(vehicle, period, asks, answers);
+      await(vehicle, period, asks, answers, sentIn[vehicle][slot]);
       System.arraycopy(next[vehicle], 0, at, 0, WORLDS);
     } else {
       Arrays.fill(asks, 0);
@@ -130,10 +141,11 @@ final class PeriodicRequests {
       // A time-out comes after all else of its moment.
       past.blend(from.add(timeoutGrains + 1), goes).blend(answer, comes).intoArray(end, i);
     }
+    if (missing.areSome) missing.replace(vehicle, begin, reads, answers, NONE);
   }
 
   /** Computes when the request is sent. A missed request has no answer. */
-  private void await(int vehicle, int period, int[] asked, int[] answers) {
+  private void await(int vehicle, int period, int[] asked, int[] answers, int[] sentIn) {
     int[] begun = began[vehicle], lastOf = latest[vehicle][window - 1];
     IntVector none = IntVector.broadcast(INTS, NONE),
         past = IntVector.broadcast(INTS, PAST),
@@ -146,7 +158,10 @@ final class PeriodicRequests {
       VectorMask<Integer> goes = before.compare(LE, zero);
       IntVector begin = IntVector.fromArray(INTS, lastOf, i).max(zero);
       before.blend(begin, goes).intoArray(begun, i);
-      begin.lanewise(ASHR, 1).intoArray(asked, i);
+      IntVector asks = begin.lanewise(ASHR, 1), next = IntVector.broadcast(INTS, periodGrains);
+      asks.intoArray(asked, i);
+      for (; asks.compare(GE, next).anyTrue(); next = next.add(periodGrains))
+        IntVector.fromArray(INTS, sentIn, i).add(1, asks.compare(GE, next)).intoArray(sentIn, i);
       none.blend(zero, goes).intoArray(answers, i);
     }
   }

@@ -39,13 +39,18 @@ final class PredictiveOffers extends LaneOffers {
   private boolean more;
 
   /** @param maxDelayS the longest one-way delay of any link */
-  PredictiveOffers(LoopTiming.Predictive timing, int vehicles, double maxDelayS, LaneForecast forecast) {
-    super(vehicles, new LaneDelays(), true, 0);
+  PredictiveOffers(
+      LoopTiming.Predictive timing,
+      int vehicles,
+      double maxDelayS,
+      LaneForecast forecast,
+      MissingReadings missing) {
+    super(vehicles, new LaneDelays(), missing, true, 0);
     this.forecast = forecast;
     double periodS = timing.periodS();
     periodGrains = LaneViews.grains(periodS);
     due = forecast.dueGrains;
-    requests = new PeriodicRequests(periodS, timing.asking(), vehicles, maxDelayS, delays);
+    requests = new PeriodicRequests(periodS, timing.asking(), vehicles, maxDelayS, delays, missing);
     keepOffers(new int[WORLDS]);
     Arrays.fill(nextAt, due + periodGrains);
     for (int v = 0; v < vehicles; v++) fresh[v] = forecast.track(v).fresh;

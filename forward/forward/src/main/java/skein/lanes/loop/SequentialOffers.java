@@ -40,14 +40,17 @@ final class SequentialOffers extends LaneOffers {
   /** For each vehicle, the delay of its request, then of its answer. */
   private final int[][] drawn;
 
+  /** The vehicle that has no reading for the round, if readings may be missing. */
+  private final int[] missingOf = new int[WORLDS];
+
   private final int[] beatPlaces = new int[WORLDS];
   private int row;
 
   /** Vectors in which some world needs its next round. */
   private final LaneVectors searching = new LaneVectors();
 
-  SequentialOffers(LoopTiming.Sequential timing, int vehicles) {
-    super(vehicles, new LaneDelays(), true, (int) (AHEAD_S / timing.periodS()));
+  SequentialOffers(LoopTiming.Sequential timing, int vehicles, MissingReadings missing) {
+    super(vehicles, new LaneDelays(), missing, true, (int) (AHEAD_S / timing.periodS()));
     read = new int[vehicles][WORLDS];
     laterRead = new int[vehicles][WORLDS];
     drawn = new int[2 * vehicles][WORLDS];
@@ -108,6 +111,7 @@ final class SequentialOffers extends LaneOffers {
   private void find() {
     while (shift()) {
       delays.drawInTurn(searching, tickPlace, 0, (long) row * periodGrains, tick, drawn);
+      if (missing.areSome) missing.find(searching, tick, (long) row * periodGrains, drawn, missingOf);
       flyRound();
     }
   }
@@ -163,6 +167,7 @@ final class SequentialOffers extends LaneOffers {
         IntVector.fromArray(INTS, laterRead[v], i).blend(over.add(there), found).intoArray(laterRead[v], i);
         over = over.add(back.min(timeout), found);
         found = found.andNot(back.compare(GT, timeout));
+        if (missing.areSome) found = found.andNot(IntVector.fromArray(INTS, missingOf, i).compare(EQ, v));
       }
       later.blend(over, found).intoArray(laterEnd, i);
       IntVector.fromArray(INTS, laterPlaces, i).blend(at, found).intoArray(laterPlaces, i);

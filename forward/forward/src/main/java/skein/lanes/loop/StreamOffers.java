@@ -16,21 +16,30 @@ final class StreamOffers extends LaneOffers {
 
   /** @param maxDelayS the longest one-way delay of any link */
   StreamOffers(
-      LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, boolean shortCut) {
-    this(timing, maxDelayS, new LaneViews(timing, vehicles, durationS, maxDelayS, shortCut), shortCut);
+      LoopTiming.Stream timing,
+      int vehicles,
+      double durationS,
+      double maxDelayS,
+      boolean shortCut,
+      MissingReadings missing) {
+    this(
+        timing,
+        maxDelayS,
+        new LaneViews(timing, vehicles, durationS, maxDelayS, shortCut, missing),
+        shortCut);
   }
 
   private StreamOffers(LoopTiming.Stream timing, double maxDelayS, LaneViews regular, boolean shortCut) {
-    super(regular.vehicles, regular.delays, true, LaneViews.ROWS_EARLY);
+    super(regular.vehicles, regular.delays, regular.missing, true, LaneViews.ROWS_EARLY);
     this.regular = regular;
     this.shortCut = shortCut;
-    joined = new JoinedViews(timing, vehicles, maxDelayS, delays);
+    joined = new JoinedViews(timing, vehicles, maxDelayS, delays, missing);
   }
 
   @Override
   void start(int[] worldKeys, TabledDelays[] links) {
     delays.start(worldKeys, links);
-    isRegular = delays.isSteady || delays.isConstant || !shortCut;
+    isRegular = delays.isSteady && !missing.areSome || delays.isConstant || !shortCut;
     if (isRegular) regular.start(worldKeys, links);
     else joined.start(links);
   }

@@ -68,9 +68,15 @@ public final class TimetableKernel {
     TimetableAgents agent = agents[operations[field + 1]];
     int first = operations[field + 2];
     switch (operations[field]) {
-      case LOOK ->
-          agent.vehicles.look(
-              times, number, first * WORLDS, readsVelocity && operations[field + 3] != 0);
+      case LOOK -> {
+        boolean isMoving = readsVelocity && operations[field + 3] != 0;
+        agent.vehicles.look(times, number, first * WORLDS, isMoving);
+        if (operations[field + 4] >= 0)
+          agent.vehicles.sense(
+              (long) operations[field + 4] << 32 | operations[field + 5] & 0xffffffffL,
+              first * WORLDS,
+              isMoving);
+      }
       case ACT -> agent.vehicles.act(times, number, agent.headings, first * WORLDS);
       case SCORE -> scores.score(agents, views, first * agents.length, times[number]);
       case END ->

@@ -1,8 +1,10 @@
 package skein.lanes.timetable;
 
 import skein.forward.RolloutAgent;
+import skein.lanes.plant.LaneSensors;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.VehicleNumbers;
+import skein.vehicle.SensorNoise;
 
 /** The vehicles of one role in many worlds, simulated by a {@link Timetable}: events happen simultaneously in
  * all worlds, so all that depends only on time is a constant of the timetable, computed by a corresponding
@@ -18,6 +20,9 @@ public abstract class TimetableVehicles extends TimetableReadings {
       startZ = new float[WORLDS];
 
   private final boolean inSpace;
+
+  /** Errors of readings; null if these are true. */
+  private LaneSensors sensors;
 
   public TimetableVehicles(RolloutAgent agent) {
     this(agent, false);
@@ -89,6 +94,36 @@ public abstract class TimetableVehicles extends TimetableReadings {
 
   /** Sets one world's vehicle to its start, at rest. */
   abstract void rest(int world, float headingRad);
+
+  public final void senseBy(SensorNoise noise) {
+    sensors = new LaneSensors(noise, inSpace);
+  }
+
+  /** Sets the seeds of the errors of the next episode's readings, if there are any.
+   *
+   * @param seeds by world
+   * @param vehicle index of these vehicles
+   */
+  public final void seed(long[] seeds, int vehicle) {
+    if (sensors != null) sensors.start(seeds, vehicle);
+  }
+
+  /** Adds the errors of a reading.
+   *
+   * @param atNs time of the reading
+   * @param into the index, for the first world, of the reading
+   */
+  final void sense(long atNs, int into, boolean withVelocity) {
+    sensors.at(atNs);
+    sensors.add(LaneSensors.NORTH, seenX, into);
+    sensors.add(LaneSensors.EAST, seenY, into);
+    if (inSpace) sensors.add(LaneSensors.DOWN, seenZ, into);
+    // In space, velocities are always read.
+    if (!withVelocity && !inSpace) return;
+    sensors.add(LaneSensors.NORTH_MPS, seenVx, into);
+    sensors.add(LaneSensors.EAST_MPS, seenVy, into);
+    if (inSpace) sensors.add(LaneSensors.DOWN_MPS, seenVz, into);
+  }
 
   /** Reads the vehicles.
    *

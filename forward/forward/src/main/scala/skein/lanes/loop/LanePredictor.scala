@@ -80,7 +80,7 @@ private[lanes] final class PlantPredictor(val lanes: PlantLanes, val correction:
   private val tell = lanes.stages.tell(lanes.plant)
 
   override def inSpace: Boolean                        = lanes.inSpace
-  override def remembers: Boolean                      = !correction.isTold
+  override def remembers: Boolean                      = !correction.isTold || inSpace
   def deadTimeS: Double                                = lanes.plant.deadTimeS
   def vehicles(agent: RolloutAgent): PredictedVehicles = PredictedPlants(lanes, correction, agent.speed)
   def alone(agent: RolloutAgent): ForecastVehicles     = ForecastPlants(lanes, correction, agent.speed)

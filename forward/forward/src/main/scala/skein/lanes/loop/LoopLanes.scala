@@ -2,6 +2,7 @@ package skein.lanes.loop
 
 import scala.collection.mutable
 import skein.forward.{Delays, RolloutAgent, LoopTiming, Steering, TabledDelays}
+import skein.vehicle.SensorNoise
 
 /** A loop for worlds with separate delays: it computes the offers, the pacing of commands, and how long the
   * vehicles' history is needed. Mutable, because its offers are; one per kernel.
@@ -9,6 +10,7 @@ import skein.forward.{Delays, RolloutAgent, LoopTiming, Steering, TabledDelays}
   * @param predictors of the vehicles that are read, if the loop predicts
   * @param maxDelayS the longest one-way delay of any link
   * @param sees whether images are taken, which require the vehicles' positions at any time
+  * @param noise errors of each vehicle's readings, of which some may be missing
   * @param shortCut whether SIMD computes regular stretches of `stream`; if false, each world is computed
   *   separately, with equal results
   */
@@ -18,9 +20,13 @@ private[lanes] final class LoopLanes(
     val durationS: Double,
     maxDelayS: Double,
     val sees: Boolean = false,
+    noise: Vector[Option[SensorNoise]] = Vector.empty,
     shortCut: Boolean = true
 ):
   private val vehicles = predictors.size
+  private val missing  = MissingReadings(
+    predictors.indices.map(noise.lift(_).flatten.flatMap(_.ofMissing).orNull).toArray
+  )
 
   /** The forecast; null if decisions use the readings themselves. */
   val forecast: LaneForecast =
@@ -35,10 +41,12 @@ private[lanes] final class LoopLanes(
     for by <- predictors(vehicle) do forecast.follow(vehicle, by.alone(agent), read)
 
   val offers: LaneOffers = timing match
-    case stream: LoopTiming.Stream         => StreamOffers(stream, vehicles, durationS, maxDelayS, shortCut)
-    case sequential: LoopTiming.Sequential => SequentialOffers(sequential, vehicles)
-    case futures: LoopTiming.Futures       => FuturesOffers(futures, vehicles, maxDelayS)
-    case predictive: LoopTiming.Predictive => PredictiveOffers(predictive, vehicles, maxDelayS, forecast)
+    case stream: LoopTiming.Stream =>
+      StreamOffers(stream, vehicles, durationS, maxDelayS, shortCut, missing)
+    case sequential: LoopTiming.Sequential => SequentialOffers(sequential, vehicles, missing)
+    case futures: LoopTiming.Futures       => FuturesOffers(futures, vehicles, maxDelayS, missing)
+    case predictive: LoopTiming.Predictive =>
+      PredictiveOffers(predictive, vehicles, maxDelayS, forecast, missing)
     case other => throw IllegalArgumentException(s"expected a loop that is not refused, got $other")
 
   def periodS: Double    = timing.periodS

@@ -2,6 +2,7 @@ package skein.lanes.loop
 
 import skein.forward.*
 import skein.lanes.timetable.StandingStill
+import skein.vehicle.SensorNoise
 
 /** The views of one world under the `stream` loop, in order, including requests that are overtaken, late,
   * failed, or held back by a full window. Views do not depend on decisions, so the loop's own joining
@@ -92,21 +93,23 @@ private[lanes] object ViewSource:
 
   /** Makes the source.
     *
+    * @param noise decides which readings are missing, by vehicle; null where none is
     * @param maxDelayS the longest one-way delay of any link
     */
   def apply(
       timing: LoopTiming.Stream,
-      vehicles: Int,
+      noise: Array[SensorNoise],
       durationS: Double,
       maxDelayS: Double,
       ahead: Int
   ): ViewSource =
+    val vehicles = noise.length
     val link     = StandingStill.Link()
     val longestS = timing.asking.timeoutS.min(2 * maxDelayS)
     val world    = RolloutWorld(
       StandingStill.engagement(vehicles, durationS),
       link,
-      Vector.fill(vehicles)(StandingStill.Response()),
+      noise.map(each => StandingStill.Response(noise = Option(each))).toVector,
       timing.asking,
       keepsAll = false,
       asksPolicies = false,

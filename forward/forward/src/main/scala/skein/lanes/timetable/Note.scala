@@ -7,8 +7,11 @@ private[lanes] sealed trait Note:
   def atS: Double
 
 private[lanes] object Note:
-  /** A vehicle's position is sampled, for a reading, a score or an image. */
-  final case class Look(vehicle: Int, atS: Double, reading: Int) extends Note
+  /** A vehicle's position is sampled, for a reading, a score or an image.
+    *
+    * @param sensedNs time of a reading that may have errors, ns; negative for the truth
+    */
+  final case class Look(vehicle: Int, atS: Double, reading: Int, sensedNs: Long = -1) extends Note
 
   /** A reading is predicted.
     *

@@ -23,7 +23,7 @@ private[lanes] final class PredictedPlants(
   private val still   = Directions(WORLDS, lanes.inSpace)
   private val correct = correction.call
   private val count   = lanes.count
-  private var startZ  = Array.emptyFloatArray
+  private val restZ   = Array.ofDim[Float](WORLDS)
 
   /** The state at each reading, by the reading's slot; used only if readings lack a part of the state. */
   private var states = Array.emptyFloatArray
@@ -34,12 +34,12 @@ private[lanes] final class PredictedPlants(
     flight.use(worlds)
     correct.use(worlds)
     if lanes.inSpace then
-      this.startZ = startZ
-      still.level(startZ)
+      System.arraycopy(startZ, 0, restZ, 0, WORLDS)
+      still.level(restZ)
 
   /** Writes the state before the first reading. */
   private def rest(): Unit =
-    if lanes.inSpace then lanes.restInSpace(before, 0, startZ) else lanes.rest(before, 0)
+    if lanes.inSpace then lanes.restInSpace(before, 0, restZ) else lanes.rest(before, 0)
 
   override def enter(
       read: TimetableReadings,
@@ -50,7 +50,12 @@ private[lanes] final class PredictedPlants(
   ): Unit =
     val needed = read.seenX.length * count
     if states.length < needed then states = Arrays.copyOf(states, needed)
-    if from < 0 then rest()
+    if from < 0 then
+      // Before its first command the vehicle is assumed to hold the altitude of its first reading.
+      if lanes.inSpace then
+        System.arraycopy(read.seenZ, reading, restZ, 0, WORLDS)
+        still.level(restZ)
+      rest()
     else
       System.arraycopy(states, from * count, flight.state, 0, flight.state.length)
       if fly(sent, propagation) then flight.end(before, 0)
@@ -59,6 +64,9 @@ private[lanes] final class PredictedPlants(
 
   override def restart(world: Int, read: TimetableReadings): Unit =
     val state = Array.ofDim[Float](before.length)
+    if lanes.inSpace && read.seenZ.length > 0 then
+      restZ(world) = read.seenZ(world)
+      still.level(world, WORLDS, restZ(world))
     rest()
     for reading <- 0 until states.length by state.length do
       take(read, reading / count, state, 0)

@@ -3,6 +3,7 @@ package skein.lanes.timetable
 import skein.forward.{DelayTable, Delays, RolloutAgent, Engagement, TabledDelays, Vehicle, VelocityResponse}
 import skein.fusion.SensorModel
 import skein.policy.{Action, Assignment, KeepHeading, Role}
+import skein.vehicle.SensorNoise
 
 /** Vehicles at rest, used to compute the times of a loop, which do not depend on positions. */
 private[lanes] object StandingStill:
@@ -22,10 +23,12 @@ private[lanes] object StandingStill:
   /** The response of vehicles at rest.
     *
     * @param handsOverS value of [[VelocityResponse.handoverS]]
+    * @param noise decides which readings are missing
     */
-  final class Response(handsOverS: Double = 0) extends VelocityResponse:
-    override def handoverS: Double = handsOverS
-    def create(): Vehicle          = new Vehicle:
+  final class Response(handsOverS: Double = 0, noise: Option[SensorNoise] = None) extends VelocityResponse:
+    override def handoverS: Double            = handsOverS
+    override def sensors: Option[SensorNoise] = noise
+    def create(): Vehicle                     = new Vehicle:
       def start(x: Double, y: Double, z: Double): Unit = ()
       def act(action: Action): Unit                    = ()
       def advance(timeS: Double): Unit                 = ()

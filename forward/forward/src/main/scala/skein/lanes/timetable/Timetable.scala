@@ -15,7 +15,7 @@ import skein.vehicle.ConstantVelocity
   *
   * @param vehicles number of vehicles
   * @param operations [[Timetable.Fields]] integers each: the kind, of [[TimetableKernel]]; the vehicle; then
-  *   slots
+  *   slots. A reading also has the upper and lower half of its time, ns, which is negative if it is true
   * @param numbers number of `times` per operation
   * @param times the times of each operation, s: for an event of a vehicle, the values of its [[EventClock]];
   *   for a decision, the time since the one before, and in a duel the ages of the vehicle's own and of the
@@ -65,6 +65,7 @@ private[skein] object Timetable:
     * @param tellsMore see [[Timetable.more]]; not for two vehicles that decide by
     *   [[skein.lanes.policy.OpponentLanes]]
     * @param end how the flight may end before its duration
+    * @param sensorSeed decides which readings are missing, by default the key
     */
   def of(
       models: Vector[TimetableDynamics],
@@ -74,16 +75,17 @@ private[skein] object Timetable:
       key: Int,
       eyes: Map[Int, SensorModel] = Map.empty,
       tellsMore: Boolean = false,
-      end: OwnEnds = OwnEnds.None
+      end: OwnEnds = OwnEnds.None,
+      sensorSeed: Option[Long] = None
   ): Timetable =
     val notes = TimetableNotes(models, eyes, tellsMore, end)
     Rollout(
       StandingStill.engagement(models.size, durationS, eyes),
       unpredicted(timing),
       link,
-      models.map(model => StandingStill.Response(model.handoverS)),
+      models.map(model => StandingStill.Response(model.handoverS, model.sensors.flatMap(_.ofMissing))),
       asksPolicies = false
-    ).fly(key, observer = notes): Unit
+    ).fly(key, observer = notes, sensorSeed = sensorSeed): Unit
     TimetableCompiler(notes, models).result
 
   /** The loop with a trivial predictor: vehicles at rest are predicted at no cost. */
@@ -242,7 +244,9 @@ private final class TimetableCompiler(
         LOOK,
         vehicle,
         readings(vehicle).take(reading),
-        if decidedUpon(vehicle)(reading) then 1 else 0
+        if decidedUpon(vehicle)(reading) then 1 else 0,
+        (note.sensedNs >>> 32).toInt,
+        note.sensedNs.toInt
       )
       happens(vehicle, note.atS, acts = false)
 

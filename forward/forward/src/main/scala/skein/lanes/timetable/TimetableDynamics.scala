@@ -1,6 +1,7 @@
 package skein.lanes.timetable
 
 import skein.forward.RolloutAgent
+import skein.vehicle.SensorNoise
 
 /** Simulates a kind of vehicle by [[Timetable]]s. */
 private[skein] trait TimetableDynamics:
@@ -9,6 +10,9 @@ private[skein] trait TimetableDynamics:
 
   /** See [[skein.forward.VelocityResponse.handoverS]]. */
   def handoverS: Double
+
+  /** Errors of the vehicles' readings, if they have any. */
+  def sensors: Option[SensorNoise] = None
 
   def clock(): EventClock
 

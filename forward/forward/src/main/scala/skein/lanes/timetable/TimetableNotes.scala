@@ -39,9 +39,9 @@ private[lanes] final class TimetableNotes(
   private val decisionOf = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
   private val placed     = Array.ofDim[Int](vehicles)
 
-  private def look(vehicle: Int, timeS: Double): Int =
+  private def look(vehicle: Int, timeS: Double, sensedNs: Long = -1): Int =
     looks(vehicle) += 1
-    all += Note.Look(vehicle, timeS, looks(vehicle))
+    all += Note.Look(vehicle, timeS, looks(vehicle), sensedNs)
     looks(vehicle)
 
   /** Number of a view; several vehicles may decide on one view in sequence. */
@@ -52,7 +52,7 @@ private[lanes] final class TimetableNotes(
   override def read(vehicle: Int, question: Int, atNs: Long, x: Double, y: Double, z: Double): Unit =
     val seen = readingOf(vehicle)
     while seen.size <= question do seen += 0
-    seen(question) = look(vehicle, atNs * 1e-9)
+    seen(question) = look(vehicle, atNs * 1e-9, if models(vehicle).sensors.isEmpty then -1 else atNs)
 
   override def entered(
       vehicle: Int,

@@ -8,7 +8,7 @@ private[skein] trait TimetablePredictor:
 
   def vehicles(agent: RolloutAgent): PredictedVehicles
 
-  /** Whether the model's state contains more than a reading. */
+  /** Whether the model's state contains more than a reading, such as the altitude that it holds at first. */
   def remembers: Boolean = false
 
   /** Time from a command's arrival until a vehicle is assumed to follow it, s. */

@@ -5,10 +5,12 @@ import skein.forward.{AlternatingDelays, DelayTable, LinkDelays, LoopTiming, Tab
 import skein.optimise.LatencyBudget
 import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
+import skein.vehicle.SensorNoise
 
 class StreamOffersSuite extends munit.FunSuite:
   private val worlds    = LaneOffers.WORLDS
   private val durationS = 30.0
+  private val keys      = Array.tabulate(worlds)(WorldRandom.key(6, 0, _))
 
   /** A view: its times from the flight's start, in grains, and its indices relative to those of the first
     * request.
@@ -25,15 +27,18 @@ class StreamOffersSuite extends munit.FunSuite:
       timing: LoopTiming.Stream,
       vehicles: Int,
       links: Array[TabledDelays],
-      shortCut: Boolean
+      shortCut: Boolean,
+      noise: SensorNoise
   ): Vector[Vector[Told]] =
-    val offers = StreamOffers(timing, vehicles, durationS, links.map(_.maxS).max, shortCut)
+    val missing = MissingReadings(Array.fill(vehicles)(noise))
+    if noise != null then missing.start(keys)
+    val offers = StreamOffers(timing, vehicles, durationS, links.map(_.maxS).max, shortCut, missing)
     val told   = Vector.fill(worlds)(ArrayBuffer.empty[Told])
     val rows   = (durationS / timing.periodS).round.toInt
     val period = LaneViews.grains(timing.periodS).toLong
     val team   = (0 until vehicles).toVector
     def isNew(vehicle: Int, world: Int) = offers.fresh(vehicle) == null || offers.fresh(vehicle)(world) > 0
-    offers.start(Array.tabulate(worlds)(WorldRandom.key(6, 0, _)), links)
+    offers.start(keys, links)
     for row <- 0 until rows do
       offers.startRow(row)
       while offers.nextBeat() do
@@ -76,18 +81,29 @@ class StreamOffersSuite extends munit.FunSuite:
     (name, bad) <- steady ++ changing ++ losing
   do
     test(s"$vehicles vehicles, $name: views with SIMD equal those computed one by one"):
-      val timing = LoopTiming.stream(0.1)
-      // In neighbouring lanes with links without any irregularity.
-      val good     = if bad.isInstanceOf[DelayTable] then DelayTable.none else DelayTable.direct
-      val links    = Array.tabulate[TabledDelays](worlds)(world => if world % 3 == 0 then good else bad)
-      val byLanes  = views(timing, vehicles, links, shortCut = true)
-      val oneByOne = views(timing, vehicles, links, shortCut = false)
-      // Views are reported early, so the last ones are reported although they are joined after the flight's
-      // end.
-      val within = (durationS - 1) * 1e9 / DelayTable.GrainNs
-      for world <- 0 until worlds do
-        val (these, those) = (byLanes(world), oneByOne(world))
-        for ((one, other), number) <- these.zip(those).zipWithIndex if other.joinedAt < within do
-          assertEquals(one, other, s"world $world, view $number")
-        assertEquals(these.count(_.joinedAt < within), those.count(_.joinedAt < within), s"world $world")
-        assert(these.size > durationS * 5, s"world $world: ${these.size} views")
+      agree(vehicles, bad)
+
+  for
+    vehicles     <- Seq(2, 3)
+    (name, link) <- Seq("none" -> DelayTable.none, "vpn" -> DelayTable.vpn, steady.head)
+    text         <- Seq("dropout=5%", "dropout=60%", "outage=1s/3s,dropout=2%")
+  do
+    test(s"$vehicles vehicles, $name, readings with $text: views with SIMD equal those computed one by one"):
+      agree(vehicles, link, SensorNoise.parse(text).fold(fail(_), identity), leastHz = 0.1)
+
+  private def agree(vehicles: Int, bad: TabledDelays, noise: SensorNoise = null, leastHz: Double = 5): Unit =
+    val timing = LoopTiming.stream(0.1)
+    // In neighbouring lanes with links without any irregularity.
+    val good    = if bad.isInstanceOf[DelayTable] && noise == null then DelayTable.none else DelayTable.direct
+    val links   = Array.tabulate[TabledDelays](worlds)(world => if world % 3 == 0 then good else bad)
+    val byLanes = views(timing, vehicles, links, shortCut = true, noise)
+    val oneByOne = views(timing, vehicles, links, shortCut = false, noise)
+    // Views are reported early, so the last ones are reported although they are joined after the flight's
+    // end.
+    val within = (durationS - 1) * 1e9 / DelayTable.GrainNs
+    for world <- 0 until worlds do
+      val (these, those) = (byLanes(world), oneByOne(world))
+      for ((one, other), number) <- these.zip(those).zipWithIndex if other.joinedAt < within do
+        assertEquals(one, other, s"world $world, view $number")
+      assertEquals(these.count(_.joinedAt < within), those.count(_.joinedAt < within), s"world $world")
+      assert(these.size > durationS * leastHz, s"world $world: ${these.size} views")

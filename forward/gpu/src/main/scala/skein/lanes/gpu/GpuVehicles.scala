@@ -4,6 +4,7 @@ import skein.forward.{
   RolloutAgent,
   PlantResponse,
   QuadrotorResponse,
+  SensedResponse,
   VelocityResponse
 }
 import skein.gpu.{Ptx, PtxExpressions, Variables}
@@ -36,7 +37,8 @@ private[lanes] object GpuVehicle:
     case PlantResponse(plant)         => PlantLanes.of(plant).map(lanes => GpuPlant(_, _, _, _, lanes))
     case quadrotor: QuadrotorResponse =>
       QuadrotorLanes.of(quadrotor.quadrotor).map(lanes => GpuQuadrotor(_, _, _, _, lanes))
-    case _ => Left("the GPU does not know the vehicle")
+    case _: SensedResponse => Left("the GPU does not add errors to readings")
+    case _                 => Left("the GPU does not know the vehicle")
 
 /** A vehicle that moves according to a plant's [[PlantStages]]. */
 private[lanes] final class GpuPlant(
