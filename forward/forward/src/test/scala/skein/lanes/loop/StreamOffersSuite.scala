@@ -66,9 +66,10 @@ class StreamOffersSuite extends munit.FunSuite:
     "slow and direct" -> AlternatingDelays(wild(300, 300), DelayTable.direct, 1, 0.5)
   ).map((name, link) => s"$name in turns" -> link)
 
-  private val losing = Seq("loss:5%,vpn", "loss:5%/4,outage:1s/10s,vpn", "loss:10%,constant:80ms").map: text =>
-    val link = LatencyProfile.parse(text, Left(_)).flatMap(LinkDelays.checked(_, packetsPerS = 40))
-    text -> link.toOption.collect { case delays: TabledDelays => delays }.get
+  private val losing =
+    Seq("loss:5%,vpn", "loss:5%/4,outage:1s/10s,vpn", "loss:10%,constant:80ms").map: text =>
+      val link = LatencyProfile.parse(text, Left(_)).flatMap(LinkDelays.checked(_, packetsPerS = 40))
+      text -> link.toOption.collect { case delays: TabledDelays => delays }.get
 
   for
     vehicles    <- Seq(2, 3, 6)
@@ -77,8 +78,8 @@ class StreamOffersSuite extends munit.FunSuite:
     test(s"$vehicles vehicles, $name: views with SIMD equal those computed one by one"):
       val timing = LoopTiming.stream(0.1)
       // In neighbouring lanes with links without any irregularity.
-      val good = if bad.isInstanceOf[DelayTable] then DelayTable.none else DelayTable.direct
-      val links = Array.tabulate[TabledDelays](worlds)(world => if world % 3 == 0 then good else bad)
+      val good     = if bad.isInstanceOf[DelayTable] then DelayTable.none else DelayTable.direct
+      val links    = Array.tabulate[TabledDelays](worlds)(world => if world % 3 == 0 then good else bad)
       val byLanes  = views(timing, vehicles, links, shortCut = true)
       val oneByOne = views(timing, vehicles, links, shortCut = false)
       // Views are reported early, so the last ones are reported although they are joined after the flight's
