@@ -17,6 +17,8 @@ final class DelayTable private (val delaysS: Array[Float]) extends TabledDelays:
 
   private[skein] def stretches(worldKey: Int): TableStretch = TableStretch.Only(this)
 
+  private[skein] def isConstant: Boolean = delaysNs.head == delaysNs.last
+
   /** Copies all delays into an array, from index `at` on, in units of [[DelayTable.GrainNs]]. All delays must
     * be less than eight seconds.
     */
@@ -54,6 +56,9 @@ trait TabledDelays extends Delays:
   def maxS: Float
 
   private[skein] def stretches(worldKey: Int): TableStretch
+
+  /** Whether all delays are equal, at least for a time, apart from losses. */
+  private[skein] def isConstant: Boolean
 
 /** A stretch of time in which a world's delays come from one table. Mutable: `next` moves to the following
   * stretch.

@@ -69,6 +69,8 @@ final case class AlternatingDelays(
 
   private[skein] def stretches(worldKey: Int): TableStretch = Alternating(worldKey)
 
+  private[skein] def isConstant: Boolean = busy.isConstant || quiet.isConstant
+
   private final class Alternating(worldKey: Int) extends TableStretch:
     private var number = 0
     private var untilS = 0.0

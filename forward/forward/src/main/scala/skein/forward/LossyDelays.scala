@@ -44,6 +44,8 @@ final class LossyDelays private (
 
   private[skein] def stretches(worldKey: Int): TableStretch = base.stretches(worldKey)
 
+  private[skein] def isConstant: Boolean = base.isConstant
+
   private val last = ThreadLocal.withInitial[LossTimes](() => times(0))
 
   def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =

@@ -25,6 +25,9 @@ final class JoinedViews {
 
   private static final int PAST = -1_000_000_000;
 
+  /** Longest time for which a command can be under way, s; a later view cannot replace its own. */
+  private static final double HORIZON_S = 6;
+
   private static final int EARLY = LaneViews.ROWS_EARLY;
 
   private final int vehicles, periodGrains, patienceGrains, ahead;
@@ -85,7 +88,7 @@ final class JoinedViews {
       MissingReadings missing) {
     this.vehicles = vehicles;
     double periodS = timing.periodS();
-    horizon = 2 + (int) Math.ceil(LoopLanes.MostS() / periodS);
+    horizon = 2 + (int) Math.ceil(HORIZON_S / periodS);
     ahead = Math.min(LaneViews.MOST_AHEAD, timing.asking().window());
     periodGrains = LaneViews.grains(periodS);
     patienceGrains = LaneViews.grains(timing.patienceS());
@@ -154,7 +157,6 @@ final class JoinedViews {
     return isKnown;
   }
 
-  /** Computes the events of one more period. */
   private void advance() {
     roundsOf[slot(front)] = 0;
     requests.ask(front);
@@ -299,7 +301,7 @@ final class JoinedViews {
     }
   }
 
-  /** See {@link ViewSource#isRegular}; all vehicles were asked and sampled within the period. */
+  /** See {@link ViewSource#isRegular}; all requests were sent and read within the period. */
   private boolean isRegular(int world, int row, int at) {
     int begin = (row - front) * periodGrains, place = LaneDelays.placeOf(row);
     if (at >= begin + ahead * periodGrains) return false;
@@ -317,7 +319,6 @@ final class JoinedViews {
     return requests.ends[vehicle][requests.slot(step)][world] + (step - front) * periodGrains;
   }
 
-  /** Adds the joined views to their rounds. */
   private void add(int i) {
     IntVector at = IntVector.fromArray(INTS, joinsAt, 0),
         offers = IntVector.fromArray(INTS, lastOffer, i),

@@ -60,7 +60,7 @@ final class LaneDelays {
    */
   boolean isSteady;
 
-  /** Whether some link's delays are all equal, so that many messages arrive in one moment. */
+  /** Whether some link's delays are equal for a time, so that many messages arrive in one moment. */
   boolean isConstant;
 
   /** Whether some link's table changes, whether some link loses packets, and whether losses depend on the
@@ -110,10 +110,10 @@ final class LaneDelays {
       lossy[i] = links[i] instanceof LossyDelays losing ? losing : null;
       if (lossy[i] != null) startLosses(i, worldKeys[i]);
       else lossThreshold[i] = 0;
-      if (baseOf(links[i]) instanceof DelayTable table) {
-        tableOf[i] = beginOf(table);
-        isConstant |= delays[tableOf[i]] == delays[tableOf[i] + DelayTable.Size() - 1];
-      } else changes = true;
+      TabledDelays base = baseOf(links[i]);
+      if (base instanceof DelayTable table) tableOf[i] = beginOf(table);
+      else changes = true;
+      isConstant |= base.isConstant();
     }
     isSteady = !changes && !loses;
     if (changes)

@@ -98,7 +98,6 @@ final class PeriodicRequests {
     }
   }
 
-  /** Index of a period's requests. */
   int slot(int period) {
     return period & ring - 1;
   }

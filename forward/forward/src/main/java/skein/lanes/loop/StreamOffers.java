@@ -8,7 +8,9 @@ final class StreamOffers extends LaneOffers {
   private final LaneViews regular;
   private final JoinedViews joined;
 
-  /** Whether views are computed by {@link LaneViews}. */
+  /** Whether {@link LaneViews} computes the views: over steady links, where nearly all are regular; and where
+   * delays are equal, because only the scalar loop orders all events of one moment.
+   */
   private boolean isRegular;
 
   private final boolean shortCut;

@@ -77,7 +77,7 @@ private[lanes] object LoopLanes:
   /** Latest time of a command's effect, s after the begin of its period. With up to a second and a half for
     * reading vehicles, times in grains stay within the range of integers.
     */
-  val MostS: Double = 6.0
+  val MostS = 6.0
 
   /** Longest time from the first reading of a view to its decision, s. */
   def readingS(timing: LoopTiming, vehicles: Int, maxDelayS: Double): Double =
