@@ -2,6 +2,7 @@ package skein.cli
 
 import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
+import skein.environment.EnvironmentSettings
 import skein.flight.NotFlown
 import skein.learn.LearnerSettings
 import skein.optimise.{Evaluator, Objective, RunningStats}
@@ -297,7 +298,7 @@ object LearnCommand:
       start      <- range(options.start.getOrElse(if isGame then "3..30" else "0..5"))
       usual = Option.when(isGame)("last10s")
       objective <- ForwardOptions.objectiveOf(forward.objective.orElse(usual), scenario, set)(
-        Objective.measures(_).keys
+        Objective.measures(_).collect { case (key, measure) if EnvironmentSettings.rewards(measure) => key }
       )
     yield LearnQuestion(
       algorithm,

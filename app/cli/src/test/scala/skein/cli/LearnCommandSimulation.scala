@@ -196,13 +196,17 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     refused("--algorithm: expected sac, ddpg, ppo, got 'td3'", "--algorithm", "td3")
     refused("--scenario: expected duel, surround", "--scenario", "surrond")
     refused(
-      "--objective: expected a sum of the measures of surround: off-ring, gap",
+      "--objective: expected a sum of the measures of surround: off-ring, ring, gap",
       "--scenario",
       "surround"
     )
     refused("expected settings of the scenario, got --altitude", "--scenario", "surround", "--altitude", "9")
     def team(scenario: String, objective: String) = Seq("--scenario", scenario, "--objective", objective)
-    refused("expected one of off-ring, gap, got 'ring'", team("surround", "ring")*)
+    refused(
+      "expected one of off-ring, ring, nearest, gap, surrounded-after, got 'rang'",
+      team("surround", "rang")*
+    )
+    refused("expected means over time, or one root mean square alone", team("surround", "nearest")*)
     refused("learners: expected one of leader, follower", team("formation", "slot-rms")*)
     refused("no measure of a quantity", team("blind-pursuit", "distance")*)
     refused("plant: expected tilt or quadrotor, got drag: learners climb", "--climb=2", "--plant=drag")

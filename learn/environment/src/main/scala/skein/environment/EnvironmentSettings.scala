@@ -6,7 +6,7 @@ import skein.forward.{Delays, LinkDelays, LoopTiming}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{Agent, LearnerSpace, Role}
 import skein.port.Moves
-import skein.scenario.{PaperDuel, Scenarios}
+import skein.scenario.{Measure, PaperDuel, Reduction, Scenarios}
 import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.units.{Expect, Span}
@@ -134,6 +134,10 @@ final case class EnvironmentSettings(
       .flatMap(LinkDelays.checked(_, LinkDelays.packetsPerS(vehicles, periodMs / 1000)))
 
 object EnvironmentSettings:
+  /** Whether rewards can add up to a measure: a mean, or a root mean square if it is alone. */
+  def rewards(measure: Measure): Boolean =
+    measure.reduced.exists(by => by.reduction == Reduction.Mean || by.reduction == Reduction.Rms)
+
   /** The distance that costs the pursuer, and earns the evader, 1 a period, m. */
   val RewardM = 10f
 

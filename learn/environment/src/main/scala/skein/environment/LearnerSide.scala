@@ -180,7 +180,7 @@ private[environment] object LearnerSide:
         .left
         .map("objective: " + _)
       measures = all.head.measures.map(_._2)
-      _ <- measures.find(measure => !isRms(measure) && reductionOf(measure) != Reduction.Mean)
+      _ <- measures.find(!EnvironmentSettings.rewards(_))
         .orElse(measures.find(_ => measures.sizeIs > 1 && measures.exists(isRms)))
         .map: _ =>
           "objective: expected means over time, or one root mean square alone: " +
@@ -188,9 +188,7 @@ private[environment] object LearnerSide:
         .toLeft(())
     yield all
 
-  private def reductionOf(measure: Measure) = measure.reduced.get.reduction
-
-  private def isRms(measure: Measure) = reductionOf(measure) == Reduction.Rms
+  private def isRms(measure: Measure) = measure.reduced.exists(_.reduction == Reduction.Rms)
 
   private def refusal(scenario: Scenario, learners: Vector[Int]): Option[String] =
     if learners.exists(scenario.agents(_).kind != VehicleKind.Multirotor) then
