@@ -1,4 +1,5 @@
 import contextlib
+import gc
 import os
 
 import numpy as np
@@ -203,11 +204,13 @@ def test_a_forked_process_is_told_that_java_does_not_live_on_there(make):
             env.step(np.zeros((2, 1)))
             os.write(writing, b"stepped")
         except skein.SkeinError as mistake:
-            os.write(writing, str(mistake).encode())
+            collecting = [one for one in gc.callbacks if getattr(one, "__module__", None) == "_jpype"]
+            os.write(writing, f"{mistake}; {len(collecting)} collect Java's objects".encode())
         finally:
             os._exit(0)
     os.waitpid(child, 0)
-    assert b"before this process was forked" in os.read(reading, 1000)
+    told = os.read(reading, 1000)
+    assert b"before this process was forked" in told and b"; 0 collect" in told
 
 
 def test_pettingzoo_finds_nothing_wrong():

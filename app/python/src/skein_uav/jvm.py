@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import gc
 import os
 import tempfile
 import threading
@@ -22,6 +23,8 @@ _starting = threading.Lock()
 def _fork() -> None:
     global _forked
     _forked = True
+    # JPype asks for Java's collection after Python's: without Java's threads it would wait forever.
+    gc.callbacks[:] = [one for one in gc.callbacks if getattr(one, "__module__", None) != "_jpype"]
 
 
 @contextlib.contextmanager
