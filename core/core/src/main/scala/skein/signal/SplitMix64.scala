@@ -27,10 +27,13 @@ final class SplitMix64(seed: Long):
   def nextExponential(mean: Double): Double = -mean * StrictMath.log1p(-nextDouble())
 
 object SplitMix64:
-  private val Step  = 1.0 / (1L << 53)
-  private val Gamma = 0x9e3779b97f4a7c15L
+  private val Step = 1.0 / (1L << 53)
 
-  private def mix(z0: Long): Long =
+  /** The difference between successive states of a sequence. */
+  private[skein] final val Gamma = 0x9e3779b97f4a7c15L
+
+  /** The output for a state (Steele, Lea and Flood, 2014). */
+  private[skein] def mix(z0: Long): Long =
     val z1 = (z0 ^ (z0 >>> 30)) * 0xbf58476d1ce4e5b9L
     val z2 = (z1 ^ (z1 >>> 27)) * 0x94d049bb133111ebL
     z2 ^ (z2 >>> 31)

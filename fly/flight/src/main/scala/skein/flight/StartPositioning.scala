@@ -26,8 +26,9 @@ private[flight] object StartPositioning:
     * @param moves selects the vehicles to move, by index
     */
   def fly(team: Vector[Starting], moves: Int => Boolean = _ => true)(using ExecutionContext): Future[Unit] =
-    val layered = team.zipWithIndex.collect:
-      case (vehicle, index) if moves(index) => (vehicle, team.map(_.startNed.z).min - (index + 1) * LayerM)
+    lazy val highest = team.map(_.startNed.z).min
+    val layered      = team.zipWithIndex.collect:
+      case (vehicle, index) if moves(index) => (vehicle, highest - (index + 1) * LayerM)
     for
       _ <- Future.traverse(layered)((one, down) =>
         one.leaveGround().flatMap(above => go(one, above.copy(z = down), Approach.Passing))

@@ -22,9 +22,8 @@ public final class LaneNormals {
 
   private static final VectorSpecies<Double> DOUBLES = DoubleVector.SPECIES_PREFERRED;
 
-  public static final long GAMMA = 0x9e3779b97f4a7c15L,
-      MULTIPLIER_1 = 0xbf58476d1ce4e5b9L,
-      MULTIPLIER_2 = 0x94d049bb133111ebL;
+  /** The multipliers of {@link SplitMix64#mix}. */
+  public static final long MULTIPLIER_1 = 0xbf58476d1ce4e5b9L, MULTIPLIER_2 = 0x94d049bb133111ebL;
 
   /** Half of the probability beyond the central part of {@link NormalQuantile}. */
   private static final double TAIL = 0.02425;
@@ -32,12 +31,6 @@ public final class LaneNormals {
   private static final double LEAST = 1e-12, STEP = 0x1p-53;
 
   private static final long ONE = Double.doubleToRawLongBits(1.0);
-
-  public static long mix(long z) {
-    z = (z ^ z >>> 30) * MULTIPLIER_1;
-    z = (z ^ z >>> 27) * MULTIPLIER_2;
-    return z ^ z >>> 31;
-  }
 
   /** Computes the normal deviates of random numbers; a probability below 10⁻¹² counts as that.
    *

@@ -1,5 +1,7 @@
 package skein.simd;
 
+import skein.signal.SplitMix64;
+
 /** Random numbers without state: the number at an index of a world's sequence is a hash of the world's key
  * and the index. It depends only on seed, candidate and episode, and not on order, batch or number of
  * threads.
@@ -35,11 +37,7 @@ public final class WorldRandom {
     return (bits(key, place) >>> 8) * 0x1p-24;
   }
 
-  // SplitMix64's finaliser (Steele, Lea, Flood 2014).
   private static long mix64(long value) {
-    long z = value + 0x9e3779b97f4a7c15L;
-    z = (z ^ z >>> 30) * 0xbf58476d1ce4e5b9L;
-    z = (z ^ z >>> 27) * 0x94d049bb133111ebL;
-    return z ^ z >>> 31;
+    return SplitMix64.mix(value + SplitMix64.Gamma());
   }
 }

@@ -18,4 +18,4 @@ class LaneNormalsSuite extends munit.FunSuite:
       )
 
   test("mixed numbers are those of the scalar generator"):
-    assertEquals(LaneNormals.mix(5 + LaneNormals.GAMMA), SplitMix64(5).nextLong())
+    assertEquals(SplitMix64.mix(5 + SplitMix64.Gamma), SplitMix64(5).nextLong())

@@ -2,7 +2,6 @@ package skein.lanes.plant;
 
 import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.XOR;
-import static skein.simd.LaneNormals.GAMMA;
 import static skein.simd.LaneNormals.LONGS;
 import static skein.simd.LaneNormals.MULTIPLIER_1;
 import static skein.simd.LaneNormals.MULTIPLIER_2;
@@ -26,6 +25,8 @@ public final class LaneSensors {
   public static final int NORTH = 0, EAST = 1, DOWN = 2, NORTH_MPS = 3, EAST_MPS = 4, DOWN_MPS = 5;
 
   private static final int COMPONENTS = 6, AXES = 3;
+
+  private static final long GAMMA = SplitMix64.Gamma();
 
   private static final long TICK_NS = SensorNoise.Tick();
 
@@ -88,7 +89,7 @@ public final class LaneSensors {
   }
 
   private static long mixed(long seed, int quantity) {
-    return LaneNormals.mix(SplitMix64.seedOf(seed, quantity) + GAMMA);
+    return SplitMix64.mix(SplitMix64.seedOf(seed, quantity) + GAMMA);
   }
 
   /** Prepares the errors of readings that are made simultaneously in all worlds.
@@ -96,7 +97,7 @@ public final class LaneSensors {
    * @param atNs time since the episode's start, ns
    */
   public void at(long atNs) {
-    Arrays.fill(times, LaneNormals.mix(atNs * GAMMA + 1));
+    Arrays.fill(times, SplitMix64.mix(atNs * GAMMA + 1));
     if (driftM == 0) return;
     int before = (int) (atNs / TICK_NS);
     Arrays.fill(tick, before);
@@ -110,7 +111,7 @@ public final class LaneSensors {
    * @param from first of these worlds, {@code to} the one after the last; multiples of the lane count
    */
   public void at(long[] atNs, int from, int to) {
-    for (int i = from; i < to; i++) times[i] = LaneNormals.mix(atNs[i] * GAMMA + 1);
+    for (int i = from; i < to; i++) times[i] = SplitMix64.mix(atNs[i] * GAMMA + 1);
     if (driftM == 0) return;
     int last = 0;
     for (int i = from; i < to; i++)
@@ -186,7 +187,7 @@ public final class LaneSensors {
       for (int axis = 0; axis < axes; axis++) {
         double[] values = drift[axis];
         long nth = (ticks + 1) * GAMMA;
-        for (int i = 0; i < to; i++) bits[i] = LaneNormals.mix(drifts[axis][i] + nth);
+        for (int i = 0; i < to; i++) bits[i] = SplitMix64.mix(drifts[axis][i] + nth);
         LaneNormals.of(bits, 0, to, drawn);
         int at = (ticks & TICKS - 1) * WORLDS, before = (ticks - 1 & TICKS - 1) * WORLDS;
         for (int i = 0; i < to; i++)
