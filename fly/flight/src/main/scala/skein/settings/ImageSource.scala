@@ -9,7 +9,7 @@ enum ImageSource:
 
   def text: String = this match
     case Seen             => ImageSource.SeenWord
-    case Camera(name, hz) => s"$name@$hz"
+    case Camera(name, hz) => s"$name@${PlainNumber.text(hz)}"
 
 object ImageSource:
   private val SeenWord = "seen"

@@ -2,7 +2,6 @@ package skein.settings
 
 import skein.signal.LatencyProfile
 import skein.units.*
-import skein.units.Decimals.brief
 
 /** The link between two vehicles: messages take half of a sampled round trip, and lost ones are not sent
   * again. If an object of the scene stands between the two, none arrives.
@@ -10,7 +9,7 @@ import skein.units.Decimals.brief
   * @param range distance beyond which none arrives, either; absent: at any distance
   */
 final case class VehicleLink(profile: LatencyProfile, range: Option[Metres]):
-  def text: String = range.fold("")(far => s"range:${far.value.brief}m,") + profile.name
+  def text: String = range.fold("")(far => s"range:${PlainNumber.text(far.value)}m,") + profile.name
 
 object VehicleLink:
   def parse(text: String): Either[String, VehicleLink] = text match

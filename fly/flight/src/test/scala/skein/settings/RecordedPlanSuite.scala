@@ -63,7 +63,7 @@ class RecordedPlanSuite extends munit.FunSuite:
         "sensors"        -> "position=0.1,dropout=2%",
         "wire"           -> "mavlink",
         "solver"         -> "link:vpn",
-        "images"         -> "seen front@10.0",
+        "images"         -> "seen front@10",
         "deadlineNs"     -> "20000000",
         "fallback"       -> "hover",
         "policy"         -> "own",
