@@ -38,6 +38,11 @@ object Delays:
   def command(vehicle: Int): Int         = Lines * (vehicle / 2) + FirstCommand + 2 * (vehicle % 2)
   def acknowledgement(vehicle: Int): Int = command(vehicle) + 1
 
+  /** The line of a request for an image; the image itself has the next one. */
+  private[skein] def image(vehicle: Int): Int = FirstImage + question(0, vehicle)
+
+  private val FirstImage = Lines * MostPairs * MostPairs
+
   private[skein] val FirstCommand = 8
 
   private[skein] def isCommand(line: Int): Boolean = line % Lines >= FirstCommand
@@ -49,7 +54,14 @@ object Delays:
 
   /** The key of the random sequence of a line's delays. For the first two vehicles it is the world's key. */
   private[skein] def keyOf(worldKey: Int, line: Int): Int =
-    if line < Lines then worldKey else WorldRandom.key(worldKey, line / Lines, 0)
+    if line < Lines then worldKey
+    else if line < FirstImage then WorldRandom.key(worldKey, line / Lines, 0)
+    else imageKey(worldKey, vehicleOf(line))
+
+  /** The key of all random numbers of a vehicle's images. */
+  private[skein] def imageKey(worldKey: Int, vehicle: Int): Int = WorldRandom.key(worldKey, Images, vehicle)
+
+  private val Images = 0x65796573
 
   /** A line without messages: its random numbers are the durations of a link's busy and quiet stretches. */
   private[skein] val Stretch = 12

@@ -12,14 +12,15 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
   private val periodNs   = Nanos.of(model.everyS)
   private val deadlineNs = Nanos.of(model.deadlineS)
 
-  private var key                       = 0
+  private var worldKey, key             = 0
   private var onTheWay, busy            = 0
   private var newest, waiting, reported = -1
 
   /** Resets to the start of an episode. Images are due from then on, unless the world waits for each image.
     */
   def start(worldKey: Int): Unit =
-    key = WorldRandom.key(worldKey, Stream, agent)
+    this.worldKey = worldKey
+    key = Delays.imageKey(worldKey, agent)
     onTheWay = 0; busy = 0; newest = -1; waiting = -1; reported = -1
     if !world.standsStill then world.schedule(0, RolloutWorld.Look, agent, 0)
 
@@ -42,12 +43,12 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
     world.schedule((number + 1) * periodNs, RolloutWorld.Look, agent, number + 1)
     if onTheWay < MostOnTheWay then
       onTheWay += 1
-      val delay = link.delayNs(key, Delays.question(0, agent), number, number, world.nowNs)
+      val delay = link.delayNs(worldKey, Delays.image(agent), number, number, world.nowNs)
       world.schedule(world.nowNs + delay, RolloutWorld.Exposed, agent, number)
 
   private def exposed(number: Int): Unit =
     taken(number)
-    val delay = link.delayNs(key, Delays.answer(0, agent), number, number, world.nowNs)
+    val delay = link.delayNs(worldKey, Delays.image(agent) + 1, number, number, world.nowNs)
     world.schedule(world.nowNs + delay, RolloutWorld.ImageReceived, agent, number)
 
   /** Recognises an image, or lets it wait for a free recogniser. An image that is overtaken by a newer one is
@@ -93,6 +94,3 @@ private[skein] object ImageTiming:
 
   /** Maximum number of images that are being transmitted, as in `skein.flight.CameraSensor`. */
   private val MostOnTheWay = 2
-
-  /** Separates this random sequence from those of all other delays. */
-  private val Stream = 0x65796573L

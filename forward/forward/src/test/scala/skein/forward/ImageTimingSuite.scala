@@ -1,7 +1,7 @@
 package skein.forward
 
 import scala.collection.mutable.ArrayBuffer
-import skein.signal.LatencyDistribution
+import skein.signal.{Impairment, LatencyDistribution}
 import skein.simd.WorldRandom
 import skein.units.Span
 import skein.vehicle.ReducedModel
@@ -79,6 +79,18 @@ class ImageTimingSuite extends munit.FunSuite:
   private def known(oneWayMs: Int, takesMs: Int, workers: Int, untilMs: Int) =
     images(steady(oneWayMs), LatencyDistribution.Constant(Span.ofMillis(takesMs)), workers, untilMs)._2
       .map((number, ns) => number -> (ns * 1e-6).round)
+
+  test("images share a link's busy stretches and outages with control, but not its single delays"):
+    val none           = LatencyDistribution.Constant(Span.Zero)
+    val mixed          = AlternatingDelays(steady(40), steady(10), 1, 1)
+    val (lasts, every) = (Span.ofMillis(500), Span.ofSeconds(2))
+    val failing        = LossyDelays.of(steady(10), Seq(Impairment.Outage(lasts, every)), 0.2, 40)
+    for shared <- Seq(mixed, failing); (number, ns) <- images(shared, none, 2, 20_000)._1 do
+      val sentAtNs = number * 100_000_000L
+      val control  = shared.delayNs(1, Delays.command(0), number, number, sentAtNs)
+      assertEquals(ns - sentAtNs, control, clue(number))
+    assert(images(link, none, 2, 5000)._1.exists: (number, ns) =>
+      ns - number * 100_000_000L != link.delayNs(1, Delays.question(0, 0), number, number, 0))
 
   test("no image is taken while two images are in transit"):
     val link   = steady(160)
