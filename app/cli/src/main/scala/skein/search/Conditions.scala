@@ -57,16 +57,6 @@ final case class Conditions(
     */
   def pausedEpisodes(episodes: Int): Int = if sensors.isEmpty then 1 else episodes
 
-  /** The delays of a link between the controller and this number of vehicles.
-    *
-    * @return Left says what was expected and what was given
-    */
-  def delays(link: String, vehicles: Int): Either[String, Delays] =
-    LatencyProfile
-      .parse(link, TextFile.read)
-      .left.map(_.message)
-      .flatMap(LinkDelays.checked(_, LinkDelays.packetsPerS(vehicles, periodMs / 1000)))
-
   /** @return Left says what was expected and what was given */
   def resolved(using Scenarios): Either[String, Conditions.Resolved] =
     for
@@ -90,6 +80,16 @@ object Conditions:
 
     /** The scalar reference engine, on one thread. */
     def reference: TeamBatch = TeamBatch(timing, vehicle.response, threads = 1, isReference = true)
+
+    /** The delays of a link between the controller and this number of vehicles.
+      *
+      * @return Left says what was expected and what was given
+      */
+    def delays(link: String, vehicles: Int): Either[String, Delays] =
+      LatencyProfile
+        .parse(link, TextFile.read)
+        .left.map(_.message)
+        .flatMap(LinkDelays.checked(_, timing, vehicles))
 
     /** Whether the pursuer observes the evader only through a sensor. */
     def sees: Boolean = game.agents.exists(_.eye.isDefined)

@@ -38,7 +38,7 @@ final case class SearchQuestion(
       role      <- PolicyFile.roleOf(family, Some(role)).left.map("--role: " + _)
       objective <- Objective.ofRole(objective, role).left.map("--objective: " + _)
       flown     <- conditions.resolved
-      delays    <- conditions.delays(link, vehicles = 2).left.map("--link: " + _)
+      delays    <- flown.delays(link, vehicles = 2).left.map("--link: " + _)
       opponent  <- PolicyFile
         .parse(Role.opponentOf(role), opponent)
         .left

@@ -100,7 +100,7 @@ final case class TeamQuestion(
             plantIsTold
           )
           flown  <- conditions.copy(plant = plant, altitudeM = engagements.head.altitudeM).resolved
-          delays <- conditions.delays(link, engagements.head.agents.size).left.map("--link: " + _)
+          delays <- flown.delays(link, engagements.head.agents.size).left.map("--link: " + _)
         yield WholeFlights
           .whole(engagements.head, by)
           .fold(TeamEngine.Reduced(flown, delays)): why =>

@@ -59,7 +59,7 @@ final case class LearnQuestion(
       game      <- if scenarios.isPapersGame(scenario, set) then duel(role) else team(role)
       _ <- conditions.eye.map(_ => "--eye: expected with search or budget; learners know no eyes").toLeft(())
       flown  <- conditions.resolved
-      delays <- conditions.delays(link, game.scenario.agents.size).left.map("--link: " + _)
+      delays <- flown.delays(link, game.scenario.agents.size).left.map("--link: " + _)
       _      <- whole("--steps", steps, 1, MostSteps)
       _      <- whole("--environments", environments, 1, MostEnvironments)
       _      <- within("--lesson", lessonS, 1, 3600, " s")

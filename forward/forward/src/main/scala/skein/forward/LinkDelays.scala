@@ -12,10 +12,10 @@ object LinkDelays:
 
   /** The delays of a link, if forward simulation supports it.
     *
-    * @param packetsPerS packets of all vehicles in each direction; see [[LossyDelays.of]]
+    * @param timing the loop's, which decides how many packets cross the link, and so how long bursts last
     * @return Left says what was expected and what was given
     */
-  def checked(link: LatencyProfile, packetsPerS: Double): Either[String, Delays] =
+  def checked(link: LatencyProfile, timing: LoopTiming, vehicles: Int): Either[String, Delays] =
     val reorders = link.impairments.exists(_.isInstanceOf[Impairment.Reordering])
     val base     = link.delays match
       case _ if link.bandwidth.isDefined || reorders => None
@@ -30,12 +30,23 @@ object LinkDelays:
       longestS = roundTrips.map(_.quantile(1).toSeconds).max
       _ <- Expect.that(longestS <= LongestRoundTripS):
         s"expected round trips of at most $LongestRoundTripS s, got ${link.name} with up to $longestS s"
-    yield LossyDelays.of(delays, link.impairments, Retransmission.timeout(link).toSeconds, packetsPerS)
+    yield LossyDelays.of(
+      delays,
+      link.impairments,
+      Retransmission.timeout(link).toSeconds,
+      packetsPerS(timing, vehicles, link.meanRoundTrip.toSeconds)
+    )
 
-  /** Number of packets of a loop per second in each direction: a request and a command per vehicle and
-    * period. Packets that only acknowledge others are not counted.
+  /** Number of packets of a loop per second in each direction: one for each request or its answer, and for
+    * each command or its answer. Packets that only acknowledge others are not counted.
     */
-  def packetsPerS(vehicles: Int, periodS: Double): Double = 2 * vehicles / periodS
+  private[forward] def packetsPerS(timing: LoopTiming, vehicles: Int, meanRoundTripS: Double): Double =
+    val inSequenceS = vehicles * meanRoundTripS
+    timing match
+      case LoopTiming.Sequential(periodS, _, _)   => 2 * vehicles / (periodS + inSequenceS)
+      case LoopTiming.Futures(periodS, asking, _) =>
+        vehicles * (vehicles + 1) * math.min(1 / periodS, asking.window / inSequenceS)
+      case _ => 2 * vehicles / timing.periodS
 
   /** The delays of a link; each is half of a sampled round trip. */
   def of(profile: LatencyProfile.Steady | LatencyProfile.Alternating): TabledDelays = profile match

@@ -36,7 +36,8 @@ class DelaysSuite extends munit.FunSuite:
 
   private def checked(text: String) = LinkDelays.checked(
     LatencyProfile.parse(text, Left(_)).fold(error => fail(error.message), identity),
-    LinkDelays.packetsPerS(2, 0.1)
+    LoopTiming.Stream(),
+    vehicles = 2
   )
 
   private def lossy(text: String) = checked(text) match
@@ -71,6 +72,17 @@ class DelaysSuite extends munit.FunSuite:
       both.count(_.last).toDouble / both.size
     assertEqualsDouble(next("loss:5%/4,vpn"), 0.05 + 0.95 * keeps, 0.03)
     assertEqualsDouble(next("loss:5%,vpn"), 0.05, 0.01)
+
+  test("bursts last for as many packets as the loop sends"):
+    def each(timing: LoopTiming, vehicles: Int, roundTripS: Double) =
+      LinkDelays.packetsPerS(timing, vehicles, roundTripS)
+    for timing <- Seq(LoopTiming.Stream(), LoopTiming.Predictive()) do
+      assertEqualsDouble(each(timing, 2, 0.2), 40, 1e-9)
+    // In a period of 0.1 s and two round trips, two requests and two commands.
+    assertEqualsDouble(each(LoopTiming.Sequential(), 2, 0.2), 8, 1e-9)
+    // Each of two tasks a period reads two vehicles and commands one; of eight vehicles, four tasks overlap.
+    assertEqualsDouble(each(LoopTiming.Futures(), 2, 0.2), 60, 1e-9)
+    assertEqualsDouble(each(LoopTiming.Futures(), 8, 0.2), 8 * 9 * 4 / 1.6, 1e-9)
 
   test("bursts are independent in the two directions, outages are not"):
     def together(text: String) =

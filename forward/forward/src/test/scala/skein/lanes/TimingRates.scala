@@ -36,7 +36,7 @@ import skein.vehicle.{ReducedModel, SensorNoise}
     sees <- if name == "lag" then Seq(false, true) else Seq(false)
     losing = Seq("loss:5%", "loss:5%/4", "outage:1s/10s").map: text =>
       val link = LatencyProfile.parse(s"$text,vpn", Left(_)).toOption.get
-      s" over $text" -> LinkDelays.checked(link, LinkDelays.packetsPerS(2, timing.periodS)).toOption.get
+      s" over $text" -> LinkDelays.checked(link, timing, vehicles = 2).toOption.get
     mixed = if !shared && name == "lag" then (" over vpn-mixed" -> LinkDelays.vpnMixed) +: losing else Nil
     (linked, over) <- Seq[(String, Delays)]("" -> DelayTable.vpn) ++ mixed
     text           <- if sees || linked.nonEmpty then Seq("") else sensors

@@ -114,8 +114,7 @@ final case class EnvironmentSettings(
       _     <- within("climb_mps", climbMps, 0, MostClimbMps)
       known <- VehicleChoice.parse(if plant.nonEmpty then plant else otherwise, atM).left.map("plant: " + _)
       noise <- Expect.each(Option(sensors).filter(_.nonEmpty))(SensorNoise.parse).left.map("sensors: " + _)
-      vehicle = known.sensedBy(noise.headOption)
-      delays <- delaysOf(link, vehicles).left.map("link: " + _)
+      vehicle      = known.sensedBy(noise.headOption)
       loopSettings = LoopSettings
         .every(Span.ofMillis(periodMs))
         .copy(model = _ => vehicle.response.predictor, movesInFlight = movesInFlight)
@@ -125,13 +124,12 @@ final case class EnvironmentSettings(
           "loop: expected paused, sequential, futures, stream or " +
             s"predictive, got '${kind.label}', which plans"
         )
+      delays <- LatencyProfile
+        .parse(link, TextFile.read)
+        .left.map(_.message)
+        .flatMap(LinkDelays.checked(_, timing, vehicles))
+        .left.map("link: " + _)
     yield (timing, delays, vehicle)
-
-  private def delaysOf(link: String, vehicles: Int): Either[String, Delays] =
-    LatencyProfile
-      .parse(link, TextFile.read)
-      .left.map(_.message)
-      .flatMap(LinkDelays.checked(_, LinkDelays.packetsPerS(vehicles, periodMs / 1000)))
 
 object EnvironmentSettings:
   /** Whether rewards can add up to a measure: a mean, or a root mean square if it is alone. */

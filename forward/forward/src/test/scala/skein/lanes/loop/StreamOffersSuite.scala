@@ -73,7 +73,10 @@ class StreamOffersSuite extends munit.FunSuite:
 
   private val losing =
     Seq("loss:5%,vpn", "loss:5%/4,outage:1s/10s,vpn", "loss:10%,constant:80ms").map: text =>
-      val link = LatencyProfile.parse(text, Left(_)).flatMap(LinkDelays.checked(_, packetsPerS = 40))
+      val link = LatencyProfile.parse(
+        text,
+        Left(_)
+      ).flatMap(LinkDelays.checked(_, LoopTiming.stream(0.1), vehicles = 2))
       text -> link.toOption.collect { case delays: TabledDelays => delays }.get
 
   for
