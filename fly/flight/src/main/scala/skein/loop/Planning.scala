@@ -96,7 +96,7 @@ final case class PlannedDecision(
     isSearched = plan.slices > 0,
     byPolicy,
     action.breaches.size,
-    action.breaches.headOption.map(_.toString),
+    action.breaches.headOption.map(_.text),
     course
   )
 
@@ -163,18 +163,14 @@ object Planning:
     */
   private val ClearGain = 0.1
 
-  /** After a longer pause, a vehicle's first turn is limited to that of this time, s. */
-  private val LongestTurnS = 0.5
-
   /** The random stream of a vehicle's next plan. */
   private[loop] def stream(seed: Long, self: Int, memory: Memory): Long =
     (seed * 1_000_003 + self) * 1_000_003 + memory.decisions
 
-  /** Time for which the vehicle may turn in its first step, s. The clock of a solver that decided last may be
-    * ahead within its error.
+  /** Time since the last decision, s. The clock of a solver that decided last may be ahead within its error.
     */
   private[loop] def sinceDecisionS(memory: Memory, now: Instant): Double =
-    memory.decidedAt.fold(0.0)(at => now.since(at).toSeconds.max(0).min(LongestTurnS))
+    memory.decidedAt.fold(0.0)(at => now.since(at).toSeconds.max(0))
 
   private[loop] def straight(motion: PlaneReading, planner: PlannerSettings): PredictedTrack =
     PredictedTrack.straight(motion, planner.steps, planner.dtS)

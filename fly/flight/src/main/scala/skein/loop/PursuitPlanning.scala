@@ -23,8 +23,8 @@ private final class PursuitPlanning(
 ) extends Planning(fleet, self, settings, vehicles(self)):
   import Planning.straight
   private val speed  = settings.speedMps(agent.speed.value)
-  private val leastM =
-    settings.separationM.max(if settings.apartM > 0 then settings.apartM + PlanSettings.Doubt else 0)
+  private val limitM = settings.separationM.max(settings.apartM)
+  private val leastM = limitM.max(if settings.apartM > 0 then settings.apartM + PlanSettings.Doubt else 0)
 
   private val objective = PlanCost(
     CommandLimits(
@@ -37,7 +37,7 @@ private final class PursuitPlanning(
     closest = PursuitPlanning.Closest,
     capture = PursuitPlanning.Capture,
     cruiseSpeed = speed,
-    separation = SeparationCost(leastM, margin = if leastM > 0 then 1 else 0),
+    separation = SeparationCost(leastM, margin = if leastM > 0 then 1 else 0, doubt = leastM - limitM),
     geofences = settings.geofences
   )
 
@@ -71,7 +71,7 @@ private final class PursuitPlanning(
 
   protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): PlannedMove =
     val (_, decision) = decider.decide(memory, view, now)
-    val most          = objective.limits.turnRateAt(speed) * part.situation.sinceDecisionS
+    val most          = objective.limits.turnRateAt(speed) * part.situation.firstTurnS
     val turned        = decision.heading.value - memory.headingRad
     PlannedMove(math.min(math.max(turned, -most), most), speed, Vector.empty)
 

@@ -29,7 +29,8 @@ private final class TeamPlanning(
     speedChange = 0.1,
     cruiseSpeed = settings.speedMps(agent.speed.value),
     separation =
-      if minimumM > 0 then SeparationCost(minimumM + PlanSettings.Doubt, margin = 0.8, growth = 0.5)
+      if minimumM > 0 then
+        SeparationCost(minimumM + PlanSettings.Doubt, margin = 0.8, growth = 0.5, doubt = PlanSettings.Doubt)
       else SeparationCost(0, 0, 0),
     geofences = settings.geofences,
     softness = 1
@@ -54,7 +55,7 @@ private final class TeamPlanning(
       Vector(Behaviour(Target.Along(along))),
       others
     )
-    val limits = turningAtOnce(alone.sinceDecisionS)
+    val limits = turningAtOnce(alone.firstTurnS)
     Part(
       // The vehicle cruises at the speed of its goal; other speeds serve to catch up with it.
       objective.copy(limits = limits, cruiseSpeed = settings.speedMps(speed(along))),
@@ -68,9 +69,9 @@ private final class TeamPlanning(
     place
 
   /** Limits of the first turn, which is no sharper after a longer pause. */
-  private def turningAtOnce(sinceDecisionS: Double): CommandLimits =
+  private def turningAtOnce(firstTurnS: Double): CommandLimits =
     val most =
-      if sinceDecisionS > 0 then TeamPlanning.MostTurnRad / sinceDecisionS else Double.PositiveInfinity
+      if firstTurnS > 0 then TeamPlanning.MostTurnRad / firstTurnS else Double.PositiveInfinity
     objective.limits.copy(maxTurnRate = objective.limits.maxTurnRate.min(most))
 
   /** Mean speed from a track's first point to its last, m/s. */

@@ -63,10 +63,10 @@ class PlanningSuite extends munit.FunSuite:
   ):
     val settings = PlanSettings(separationM = 5, kept = Vector(skein.scenario.Kept.Apart(7)))
     val kept     = part(settings)
-    assertEquals(kept.objective.separation, SeparationCost(8, margin = 1))
+    assertEquals(kept.objective.separation, SeparationCost(8, margin = 1, doubt = 1))
     assertEquals(kept.situation.others.size, 2) // both evaders
     val least = PlanSettings(kept = Vector(skein.scenario.Kept.Apart(0.5)))
-    assertEquals(part(least).objective.separation, SeparationCost(1.5, margin = 1))
+    assertEquals(part(least).objective.separation, SeparationCost(1.5, margin = 1, doubt = 1))
     assertEquals(part(least).situation.others.size, 2)
     val little = PlanSettings(separationM = 0.5)
     assertEquals(part(little).objective.separation, SeparationCost(0.5, margin = 1))
@@ -103,9 +103,10 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(decidedBy(pursuit(PlanSettings()), isOld = false)._1.action.speed.value, 10.0)
 
   test("a pursuer may turn for the time since its last decision, at most for half a second"):
-    assertEquals(part(PlanSettings()).situation.sinceDecisionS, 0.0)
-    assertEquals(part(PlanSettings(), Some(Span.ofMillis(200))).situation.sinceDecisionS, 0.2)
-    assertEquals(part(PlanSettings(), Some(Span.ofSeconds(3))).situation.sinceDecisionS, 0.5)
+    assertEquals(part(PlanSettings()).situation.firstTurnS, 0.0)
+    assertEquals(part(PlanSettings(), Some(Span.ofMillis(200))).situation.firstTurnS, 0.2)
+    val pause = part(PlanSettings(), Some(Span.ofSeconds(3))).situation
+    assertEquals((pause.firstTurnS, pause.sinceDecisionS), (0.5, 3.0))
 
   test("the maximum turn rate is speed over turning radius; the minimum speed is a fraction of the maximum"):
     val limits = part(PlanSettings(turningRadiusM = 4, slowestShare = 0.5)).objective.limits

@@ -3,6 +3,7 @@ package skein.planning
 import skein.policy.{Observation, Seen}
 import skein.signal.Kinematics
 import skein.units.*
+import skein.units.Decimals.{fixed, significant}
 import skein.vehicle.PlaneReading
 
 /** Simulates one manoeuvre in a situation, in doubles: the reference for the kernel, the check of the chosen
@@ -32,15 +33,17 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
     var breaches             = Vector.empty[Breached]
     for step <- 0 until manoeuvre.steps do
       val (x, y) = (track.x(step), track.y(step))
+      val aheadS = (step + 1) * dtS
       for geofence <- objective.geofences do
-        val beyond = geofence.beyond(x, y)
-        if beyond > 0 then breaches :+= Breached.Fence(step, beyond)
+        val beyond = geofence.fence.beyondM(x, y)
+        if beyond > 0 then breaches :+= Breached.Fence(aheadS, beyond)
         cost = geofence.added(cost, x, y)
       for index <- situation.others.indices do
         val other     = situation.others(index)
         val distance  = StrictMath.hypot(x - other.x(step), y - other.y(step))
-        val clearance = objective.separation.clearance((step + 1) * dtS)
-        if distance < objective.separation.minimum then breaches :+= Breached.TooNear(step, index, distance)
+        val clearance = objective.separation.clearance(aheadS)
+        val lacking   = objective.separation.minimum - objective.separation.doubt - distance
+        if lacking > 0 then breaches :+= Breached.TooNear(aheadS, index, lacking)
         cost = objective.neared(cost, x, y, other.x(step), other.y(step), clearance, dtS)
     for Behaviour(target, weight) <- situation.behaviours do
       val theirs = meeting(target, commanded, motions)
@@ -67,7 +70,7 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
     motions(0) = own.motion
     for step <- 0 until manoeuvre.steps do
       val before            = commanded(step)
-      val turnS             = if step == 0 then situation.sinceDecisionS else dtS
+      val turnS             = if step == 0 then situation.firstTurnS else dtS
       val (turnRate, speed) = (manoeuvre.turnRates(step), manoeuvre.speeds(step))
       val now               = objective.steered(before.cost, before.headingRad, turnRate, speed, turnS, dtS)
       own = own.flown(now.northMps, now.eastMps, dtS)
@@ -119,23 +122,30 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
 /** A simulated manoeuvre with its cost.
   *
   * @param track the vehicle's own track
-  * @param breaches breaches of hard limits
+  * @param breaches breaches of hard limits, without the margins of plans
   */
 final case class FlownManoeuvre(track: PredictedTrack, cost: Double, breaches: Vector[Breached])
 
 /** A breach of a hard limit at the end of a step. */
 enum Breached:
-  def step: Int
+  /** Time from the plan's begin to the step's end, s. */
+  def aheadS: Double
 
   /** Outside of a geofence.
     *
     * @param metres distance beyond the boundary, m
     */
-  case Fence(step: Int, metres: Double)
+  case Fence(aheadS: Double, metres: Double)
 
   /** Too near to another vehicle.
     *
-    * @param other index of the other vehicle
-    * @param metres what the distance lacks to the minimum separation, m
+    * @param other index in [[Situation.others]]
+    * @param metres what the distance lacks to the separation, m
     */
-  case TooNear(step: Int, other: Int, metres: Double)
+  case TooNear(aheadS: Double, other: Int, metres: Double)
+
+  def text: String =
+    val what = this match
+      case Fence(_, metres)      => s"${metres.fixed(2)} m outside of the geofence"
+      case TooNear(_, _, metres) => s"${metres.fixed(2)} m nearer to another vehicle than the separation"
+    s"$what, ${aheadS.significant(3)} s ahead"

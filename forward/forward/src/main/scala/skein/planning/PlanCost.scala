@@ -5,11 +5,11 @@ import skein.vehicle.PlaneReading
 
 /** The area that a plan must not leave.
   *
-  * @param marginM distance to keep from its boundary, on the inside, m
+  * @param marginM distance that plans keep from its boundary, on the inside, m
   */
 final case class Geofence(fence: Fence, marginM: Double = 0):
-  /** Distance of a position beyond the allowed area, m; negative inside. */
-  def beyond(x: Double, y: Double): Double = fence.beyondM(x, y) + marginM
+  /** Distance of a position beyond the area in which plans stay, m; negative inside. */
+  private[planning] def beyond(x: Double, y: Double): Double = fence.beyondM(x, y) + marginM
 
   /** Adds the cost of a step's final position. */
   private[planning] def added(cost: Double, x: Double, y: Double): Double =
@@ -20,18 +20,24 @@ final case class Geofence(fence: Fence, marginM: Double = 0):
 
 /** The cost of coming near other vehicles.
   *
-  * @param minimum hard limit of the distance, m
+  * @param minimum hard limit of the distance in plans, m
   * @param margin width of the zone beyond the minimum in which coming nearer has a cost, m
   * @param growth growth of the margin with the time ahead, m/s; later predictions are less certain
   * @param price cost per second and per square metre of missing distance
+  * @param doubt part of the minimum that only plans keep: at `minimum - doubt` the limit itself is broken, m
   */
 final case class SeparationCost(
     minimum: Double,
     margin: Double = 1,
     growth: Double = 0.5,
-    price: Double = 20
+    price: Double = 20,
+    doubt: Double = 0
 ):
   require(minimum >= 0 && margin >= 0 && growth >= 0 && price >= 0, s"must not be negative: $this")
+  require(
+    doubt >= 0 && doubt <= minimum,
+    s"expected a doubt from 0 to the minimum of $minimum m, got $doubt m"
+  )
 
   def isKept: Boolean = minimum > 0
 

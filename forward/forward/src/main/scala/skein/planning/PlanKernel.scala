@@ -79,7 +79,7 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
     Arrays.fill(heading, 0, Size, situation.headingRad.toFloat)
     Arrays.fill(cos, 0, Size, StrictMath.cos(situation.headingRad).toFloat)
     Arrays.fill(sin, 0, Size, StrictMath.sin(situation.headingRad).toFloat)
-    steer.everywhere(4, situation.sinceDecisionS.toFloat)
+    steer.everywhere(4, situation.firstTurnS.toFloat)
     steer.everywhere(5, dtS.toFloat)
     var step = 0
     while step < steps do

@@ -20,7 +20,7 @@ object PlannedMove:
     val most     = limits.turnRateAt(speed)
     val turnRate = within(plan.manoeuvre.turnRates(0), -most, most)
     val flown    = ManoeuvreRollout(situation, objective, dtS).fly(plan.manoeuvre)
-    PlannedMove(turnRate * situation.sinceDecisionS, speed, flown.breaches)
+    PlannedMove(turnRate * situation.firstTurnS, speed, flown.breaches)
 
   private def within(value: Double, least: Double, most: Double): Double =
     math.min(math.max(value, least), most)

@@ -29,7 +29,7 @@ object PolicyManoeuvre:
     var heading                  = situation.headingRad
     var held                     = memory
     for step <- 0 until steps do
-      val turnS          = if step == 0 then situation.sinceDecisionS else dtS
+      val turnS          = if step == 0 then situation.firstTurnS else dtS
       val seen           = later(observation, own.motion, step * dtS, heading, turnS)
       val (action, next) = policy.choose(seen, held.asInstanceOf[policy.Memory])
       held = next

@@ -72,7 +72,7 @@ final case class Behaviour(target: Target, weight: Double = 1)
   * dead time.
   *
   * @param headingRad the heading last commanded to this vehicle
-  * @param sinceDecisionS time since that command, for which the first step's turn lasts
+  * @param sinceDecisionS time since that command
   * @param behaviours possible behaviours of the target, equal for all candidates, so that their costs are
   *   comparable
   * @param others vehicles to keep apart from
@@ -88,3 +88,10 @@ final case class Situation(
 ):
   require(suggested.size <= 16, s"at most 16 manoeuvres may be suggested, got ${suggested.size}")
   require(sinceDecisionS >= 0, s"time since the last decision must not be negative, got $sinceDecisionS s")
+
+  /** Time for which the first step's turn lasts, s. */
+  def firstTurnS: Double = sinceDecisionS.min(Situation.LongestTurnS)
+
+object Situation:
+  /** After a longer pause, a vehicle's first turn is limited to that of this time, s. */
+  private val LongestTurnS = 0.5

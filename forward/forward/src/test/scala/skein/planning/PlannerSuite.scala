@@ -91,6 +91,33 @@ class PlannerSuite extends munit.FunSuite:
     val plan = improved(planner, situation, 10)
     assertEquals(ManoeuvreRollout(situation, fenced, settings.dtS).fly(plan.manoeuvre).breaches, Vector.empty)
 
+  test("a limit is broken by what it lacks itself; the margin of plans only has a cost"):
+    val limits    = CommandLimits(0, 10, 1, 0)
+    val kept      = Geofence(Fence.rectangle(-50, 30, -50, 50), marginM = 1)
+    val objective = PlanCost(
+      limits,
+      separation = SeparationCost(3, margin = 0, growth = 0, price = 0, doubt = 1),
+      geofences = Vector(kept)
+    )
+    // One step north; the vehicle ends at the position that `northM` says.
+    def flown(northM: Double, otherM: Double) =
+      val own  = PredictedVehicle(ReducedModel.lag(1, 1e-6, 0), PlaneReading(northM, 0, 0, 0))
+      val seen =
+        Situation(own, 0, 0.1, Vector.empty, Vector(PredictedTrack.standing(northM, otherM, steps = 1)))
+      ManoeuvreRollout(seen, objective, 0.1).fly(Manoeuvre.straight(0, 1))
+    assertEquals(flown(0, 2.6).breaches, Vector.empty)
+    assert(flown(0, 2.6).cost > PlanCost.Breach)
+    assertEquals(flown(29.5, 9).breaches, Vector.empty)
+    assert(flown(29.5, 9).cost > PlanCost.Breach)
+    assertEquals(flown(0, 9).cost, 0.0)
+    assertEquals(
+      (flown(0, 1.6).breaches ++ flown(30.5, 9).breaches).map(_.text),
+      Vector(
+        "0.40 m nearer to another vehicle than the separation, 0.1 s ahead",
+        "0.50 m outside of the geofence, 0.1 s ahead"
+      )
+    )
+
   test("without the vector module the scalar block simulates equal candidates"):
     val settings = PlannerSettings(blocksPerSlice = 2)
     val scalar   = new Planner(settings, objective, ScalarBlock(settings.steps))

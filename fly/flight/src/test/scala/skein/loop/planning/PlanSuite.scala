@@ -75,6 +75,21 @@ class PlanSuite extends munit.FunSuite, Optimised:
     )
     assertEquals(Seq(best, next, last).map(_.unsearchedS), Seq(Vector(0.0), Vector(0.1), Vector(0.2)))
 
+  test("after a pause, a plan continues where the previous one has got to"):
+    val problem = PlanProblem(settings, Vector(Part(objective, situation(0), 0)))
+    val best    = JointPlanner().searched(problem, JointPlanner().resumed(problem, None), 0, 5)
+    val pause   = PlanProblem(
+      settings,
+      problem.parts.map(part => part.copy(situation = part.situation.copy(sinceDecisionS = 0.8)))
+    )
+    assertEquals(
+      JointPlanner().resumed(pause, Some(best)).plans(0).manoeuvre.turnRates.toSeq,
+      best.plans(0).manoeuvre.shifted(0.8, settings.dtS).turnRates.toSeq
+    )
+    val last = PlanStage.Answer(best, Vector(5), Vector(0))
+    val none = JointPlanner().resumed(pause, Some(best))
+    assertEquals(PlanStage.Answer.of(Vector(none), pause, Some(last)).unsearchedS, Vector(0.8))
+
   test("several vehicles share the configured slices, each with an equal number"):
     val problem = PlanProblem(settings, Vector.tabulate(2)(n => Part(objective, situation(n), n)))
     val warm    = JointPlanner().resumed(problem, None)
