@@ -17,11 +17,15 @@ object OpponentModel:
   private[loop] def known(fleet: Fleet): Vector[Int] =
     fleet.agents.indices.toVector.filter(vehicle => of(fleet.agents(vehicle)).isRight)
 
-  /** The vehicles that are assumed to fly straight on, with the reason, in a line each for the user. */
+  /** The vehicles that decide by what plans do not know, in a line each for the user. */
   def missing(fleet: Fleet): Vector[String] =
     val duellists =
       fleet.agents.filter(agent => Planning.plans(agent) && agent.policy.isAgainstOne)
     for
-      other  <- fleet.agents if duellists.exists(_.role != other.role)
-      reason <- of(other).left.toOption
-    yield s"plan: ${other.name} is taken to fly straight on: $reason"
+      other   <- fleet.agents if duellists.exists(_.role != other.role)
+      instead <- of(other) match
+        case Left(reason)                               => Some(s"taken to fly straight on: $reason")
+        case Right(policy) if Planner.remembers(policy) =>
+          Some("predicted as if it had just begun: plans do not know its policy's memory")
+        case _ => None
+    yield s"plan: ${other.name} is $instead"

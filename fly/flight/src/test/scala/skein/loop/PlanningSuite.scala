@@ -151,6 +151,22 @@ class PlanningSuite extends munit.FunSuite:
       told
     )
 
+  test("the user reads which opponents' memories plans do not know"):
+    object Turning extends HeadingPolicy:
+      type Memory = Double
+      def start: Double                                                     = 0
+      def decide(seen: PlanarObservation, memory: Double): (Double, Double) =
+        (seen.ownHeadingRad + memory, memory + 0.01 * seen.elapsedS)
+    val evader  = fleet.opponentOf(pursuer, places)
+    val turning = Fleet(fleet.agents.updated(evader, fleet.agents(evader).copy(policy = Turning)))
+    assertEquals(
+      OpponentModel.missing(turning),
+      Vector(
+        s"plan: ${fleet.agents(evader).name} is predicted as if it had just begun: " +
+          "plans do not know its policy's memory"
+      )
+    )
+
   test("each plan of each vehicle has its own random numbers"):
     val streams =
       for seed <- 1L to 5L; self <- 0 until 5; decisions <- 0L until 20L

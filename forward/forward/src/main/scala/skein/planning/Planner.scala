@@ -206,6 +206,9 @@ object Planner:
   def refusal(opponent: Policy): Option[String] =
     refusal(PolicyLanes.of(opponent).left.map(_.getMessage))
 
+  /** Whether decisions of this policy, a formula, depend on its memory: a plan begins with the first. */
+  def remembers(opponent: Policy): Boolean = PolicyLanes.get(opponent).remembered > 0
+
   /** Why plans for vehicles that move by this plant are not supported. */
   def refusal(plant: Plant[?]): Option[String] = refusal(PlantLanes.of(plant))
 
