@@ -100,7 +100,11 @@ object VehicleChoice:
       read <- Deviation.parse(deviation)
       _    <- Expect.that(read == Deviation(read.mass, read.drag, read.lag)):
         s"expected mass, drag and lag; wind, gusts, shear and rotors are for fly and spread, got '$text'"
-    yield VehicleChoice(text, s"AirSim's quadrotor with $deviation", response(read.quadrotor))
+    yield VehicleChoice(
+      text,
+      s"AirSim's quadrotor with $deviation, which predictive does not know of",
+      response(read.quadrotor)
+    )
 
   /** Reads one of the names, or a model file: then the structure that the file says to use, or after
     * `reduced:` the file's model of three parameters, which SIMD supports.
@@ -116,7 +120,8 @@ object VehicleChoice:
       text match
         case s"$Spatial:$deviation" => deviating(text, deviation)(VelocityResponses.quadrotor(_))
         case s"$Tilt:$deviation"    =>
-          deviating(text, deviation)(quadrotor => SpatialResponse(TiltModel.of(quadrotor)))
+          deviating(text, deviation): quadrotor =>
+            SpatialResponse(TiltModel.of(quadrotor), Some(tilt.response.predictor))
         case s"mujoco:$path" =>
           MujocoModel.read(Path.of(path)).map(model =>
             VehicleChoice(text, s"MuJoCo's $path in steps of ${model.stepS} s", MujocoResponse(model))

@@ -14,8 +14,11 @@ import skein.vehicle.{
 
 /** Vehicles that move according to a [[skein.vehicle.SpatialPlant]]. They perform velocities, with or without
   * an altitude. Yaws are ignored; to hover or to turn in place becomes a command to stand still.
+  *
+  * @param model what `predictive` takes them for, if that is not the plant itself
   */
-final case class SpatialResponse(plant: SpatialPlant[?]) extends VelocityResponse:
+final case class SpatialResponse(plant: SpatialPlant[?], model: Option[VehicleModel[?]] = None)
+    extends VelocityResponse:
   require(plant.stepS > 0, s"a plant's step must be positive, got ${plant.stepS} s")
   require(plant.deadTimeS >= 0, s"a plant's dead time must not be negative, got ${plant.deadTimeS} s")
 
@@ -25,9 +28,10 @@ final case class SpatialResponse(plant: SpatialPlant[?]) extends VelocityRespons
 
   override def regardsYaw: Boolean = false
 
-  override def predictor: VehicleModel[?] = plant match
-    case observed: ObservedSpatialPlant[?] => SpatialModel(observed)
-    case _                                 => ConstantVelocity
+  override def predictor: VehicleModel[?] = model.getOrElse:
+    plant match
+      case observed: ObservedSpatialPlant[?] => SpatialModel(observed)
+      case _                                 => ConstantVelocity
 
   override def performs: Action => Boolean =
     case _: (Action.Velocity | Action.VelocityAt | Action.Along | Action.Turn) | Action.Hover => true

@@ -52,9 +52,9 @@ private[skein] object LaneDynamics:
   def of(model: VelocityResponse, inSpace: Boolean = false): Either[String, LaneDynamics] = model match
     case quadrotor: QuadrotorResponse =>
       QuadrotorLanes.of(quadrotor.quadrotor).map(QuadrotorDynamics(quadrotor, _))
-    case PlantResponse(plant)   => PlantLanes.of(plant).map(PlantDynamics(_, inSpace, fliesLevel = true))
-    case SpatialResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_, true, fliesLevel = false))
-    case car: CarResponse       => PlantLanes.of(car.plant).map(PlantDynamics(_, inSpace, fliesLevel = false))
+    case PlantResponse(plant)      => PlantLanes.of(plant).map(PlantDynamics(_, inSpace, fliesLevel = true))
+    case SpatialResponse(plant, _) => PlantLanes.of(plant).map(PlantDynamics(_, true, fliesLevel = false))
+    case car: CarResponse => PlantLanes.of(car.plant).map(PlantDynamics(_, inSpace, fliesLevel = false))
     case SensedResponse(of, noise) => this.of(of, inSpace).map(SensedDynamics(_, noise))
     case _                         => Left("SIMD does not support the vehicle")
 

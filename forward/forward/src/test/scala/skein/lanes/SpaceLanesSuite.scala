@@ -7,7 +7,7 @@ import skein.scenario.*
 import skein.simd.WorldRandom
 import skein.testing.Optimised
 import skein.units.*
-import skein.vehicle.{SensorNoise, TiltModel}
+import skein.vehicle.{Deviation, SensorNoise, TiltModel}
 
 /** Compares SIMD with the scalar reference, for teams in three dimensions. */
 class SpaceLanesSuite extends munit.FunSuite, Optimised:
@@ -100,6 +100,20 @@ class SpaceLanesSuite extends munit.FunSuite, Optimised:
     val level  = TeamBatch(LoopTiming.Stream(), VelocityResponses.lag(1, 1, 0))
     val engine = level.engine(candidates.head, true, Seq(DelayTable.vpn))
     assert(engine.text.contains("it leaves the altitude of its vehicle's start"), engine.text)
+
+  for shared <- Seq(true, false) do
+    test(
+      s"vehicles that deviate from the model that predicts them, ${if shared then "shared" else "own"} delays"
+    ):
+      val heavy        = SpatialResponse(TiltModel.of(Deviation(mass = 1.3).quadrotor), Some(model.predictor))
+      val timing       = LoopTiming.Predictive(predictor = heavy.predictor)
+      val (fast, slow) =
+        (
+          flown(timing, DelayTable.vpn, shared, false, heavy),
+          flown(timing, DelayTable.vpn, shared, true, heavy)
+        )
+      for number <- fast.indices; world <- candidates.indices do
+        assertEqualsDouble(fast(number)(world).toDouble, slow(number)(world).toDouble, 5e-3)
 
   test("climbs are not predicted with a model of level flight, and the reason is given"):
     val timing = LoopTiming.Predictive(predictor = skein.vehicle.ConstantVelocity)
