@@ -31,7 +31,7 @@ class PolicyFlightSimulation extends munit.FunSuite, Unhurried:
     assertEquals(
       settings.plans.map(plan => (plan.id, plan.seed)),
       Vector("", "-lead-pursuit", "-lead-pursuit-2").flatMap(name =>
-        Vector(s"paused-none$name" -> 3L, s"stream-vpn$name" -> 4L)
+        Vector(s"paused-none$name" -> 3L, s"stream-vpn$name" -> 3L)
       )
     )
     val flown = settings.plans

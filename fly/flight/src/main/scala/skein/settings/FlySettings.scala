@@ -137,8 +137,8 @@ final case class FlySettings(
       )
     if scenario.isAsPublished then timely.asPublished else timely
 
-  /** The flights, `paused` first, then those with policies of files. The seeds of different loops and links
-    * differ, so that their delays differ; flights that differ in the policy alone have equal seeds.
+  /** The flights, `paused` first, then those with policies of files. All have one seed, so that they differ
+    * neither in gusts nor in errors of readings.
     */
   def plans: Vector[FlightPlan] =
     val names = policies.zipWithIndex.map: (policy, index) =>
@@ -165,10 +165,9 @@ final case class FlySettings(
         link <- links
         loop <- loops if loop != LoopKind.Paused
       yield (loop, link)
-    (truth.toVector ++ others).distinct.zipWithIndex.map:
-      case ((loop, link), index) =>
-        val plan = FlightPlan(s"${loop.label}-${link.name}", loop, link, seed + index)
-        if isDecentralised(plan) then plan.copy(id = s"${plan.id}-decentralised") else plan
+    (truth.toVector ++ others).distinct.map: (loop, link) =>
+      val plan = FlightPlan(s"${loop.label}-${link.name}", loop, link, seed)
+      if isDecentralised(plan) then plan.copy(id = s"${plan.id}-decentralised") else plan
 
 /** A policy that replaces the scenario's.
   *
