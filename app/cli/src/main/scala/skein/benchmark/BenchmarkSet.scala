@@ -19,6 +19,12 @@ final case class BenchmarkSet(
   def cells: Vector[BenchmarkSet.Cell] =
     for task <- tasks; world <- worlds; link <- links yield BenchmarkSet.Cell(task, world, link)
 
+  /** Adds all entries with each of these policies, in the text form of `--policy` of `./skein fly`. */
+  def flownBy(policies: Seq[String]): BenchmarkSet =
+    val names = FlySettings.numbered(policies.map(policy => policy.substring(policy.lastIndexOf('/') + 1)))
+    copy(entries = entries ++ policies.zip(names).flatMap: (policy, name) =>
+      entries.map(entry => entry.copy(name = s"${entry.name}, $name", policy = Some(policy))))
+
 object BenchmarkSet:
   /** To be raised when any figure may change: results of different versions are not compared. */
   val Version = 3
@@ -46,9 +52,7 @@ object BenchmarkSet:
       predictor: String = "quadrotor",
       isInPacket: Boolean = false,
       policy: Option[String] = None
-  ):
-    def flownBy(policy: String): Entry =
-      copy(name = s"$name, ${policy.substring(policy.lastIndexOf('/') + 1)}", policy = Some(policy))
+  )
 
   /** The loop that all entries are compared with. */
   val Truth: Entry = Entry("truth", "paused")

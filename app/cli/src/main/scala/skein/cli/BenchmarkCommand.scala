@@ -52,10 +52,12 @@ final class BenchmarkCommand(using Scenarios)
       )
       entries <- chosen("--entry", options.entry, all.entries)(_.name)
       folder  <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
-      set = all.copy(
-        tasks = (if options.task.isEmpty && own.nonEmpty then Vector.empty else tasks) ++ own,
-        entries = entries ++ options.policy.flatMap(policy => entries.map(_.flownBy(policy)))
-      )
+      set = all
+        .copy(
+          tasks = (if options.task.isEmpty && own.nonEmpty then Vector.empty else tasks) ++ own,
+          entries = entries
+        )
+        .flownBy(options.policy)
       benchmark = Benchmark(set, options.seeds)
       _ <- benchmark.mistake.map("--policy: " + _).toLeft(())
       _    = benchmark.notFlown.foreach(Console.err.println)

@@ -58,11 +58,13 @@ class BenchmarkSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
       PolicyFile
         .ofDefaults(Role.Pursuer, PolicyFamily.leadPursuit).hocon("")
     )
-    val set = few.copy(
-      tasks = few.tasks :+ BenchmarkSet.Named("formation", "scenario = formation, duration = 14s"),
-      worlds = few.worlds.take(1),
-      entries = few.entries.take(1).flatMap(entry => Vector(entry, entry.flownBy(file.toString)))
-    )
+    val set = few
+      .copy(
+        tasks = few.tasks :+ BenchmarkSet.Named("formation", "scenario = formation, duration = 14s"),
+        worlds = few.worlds.take(1),
+        entries = few.entries.take(1)
+      )
+      .flownBy(Seq(file.toString))
     val benchmark = Benchmark(set, seeds = 2)
     assertEquals(benchmark.mistake, None)
     assertEquals(
@@ -77,8 +79,12 @@ class BenchmarkSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertEquals(rows(0).truth, rows(1).truth)
     assertNotEquals(rows(0).meanOff, rows(1).meanOff)
     assert(Svg.file(BenchmarkFigure(rows), "benchmark").contains("stream, mine.policy"))
-    val packets = BenchmarkSet.Entry("packets", "stream", isInPacket = true).flownBy(file.toString)
-    val partly  = Benchmark(set.copy(entries = set.entries :+ packets), seeds = 2)
+    val packets = few.copy(entries = Vector(BenchmarkSet.Entry("packets", "stream", isInPacket = true)))
+    val partly  =
+      Benchmark(
+        set.copy(entries = set.entries ++ packets.flownBy(Seq(file.toString)).entries.drop(1)),
+        seeds = 2
+      )
     assertEquals(partly.mistake, None, "the policy flies by another loop")
     assert(
       clue(partly.notFlown).exists(_.startsWith("packets, mine.policy does not fly duel: expected with the"))
@@ -88,6 +94,13 @@ class BenchmarkSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
       nowhere,
       seeds = 2
     ).mistake).exists(_.contains("expected with a scenario of a pursuer")))
+
+  test("entries of policies whose files have one name differ in name"):
+    val set = few.copy(entries = few.entries.take(1)).flownBy(Seq("a/policy.conf", "b/policy.conf", "own"))
+    assertEquals(
+      set.entries.map(_.name),
+      Vector("stream", "stream, policy.conf", "stream, policy.conf-2", "stream, own")
+    )
 
   test("the interval is that of the mean over seeds, and a mean of 0 in the paused loop gives no deviation"):
     def flights(values: Double*) =

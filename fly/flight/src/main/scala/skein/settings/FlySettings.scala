@@ -141,9 +141,7 @@ final case class FlySettings(
     * neither in gusts nor in errors of readings.
     */
   def plans: Vector[FlightPlan] =
-    val names = policies.zipWithIndex.map: (policy, index) =>
-      val same = policies.take(index).count(_.name == policy.name)
-      policy.name + (if same == 0 then "" else s"-${same + 1}")
+    val names  = FlySettings.numbered(policies.map(_.name))
     val chosen = policies.zip(names).map((policy, name) => ChosenPolicy(name, policy))
     withSolver((if onlyPolicies then Vector.empty else papers) ++ chosen.flatMap(plansWith))
 
@@ -229,6 +227,12 @@ object FlySettings:
     * takes 256.
     */
   val MostControllers = 50
+
+  /** Names that differ: where one stands again, a number follows. */
+  private[skein] def numbered(names: Seq[String]): Vector[String] =
+    names.toVector.zipWithIndex.map: (name, index) =>
+      val before = names.take(index).count(_ == name)
+      if before == 0 then name else s"$name-${before + 1}"
 
   private val Apart = "paused, sequential, futures, stream, predictive"
 
