@@ -12,7 +12,7 @@ import skein.units.Span
   * are independent in the two directions.
   *
   * The number of tries is limited, and the last try always succeeds; more tries would be needed with a
-  * probability of 10^−5^.
+  * probability of 2 · 10^−5^.
   *
   * @param share share of packets that are lost independently
   * @param bursts mean duration of bursts and of the time between them, s
@@ -84,7 +84,7 @@ object LossyDelays:
   private val BurstsToClient = Delays.Stretch + 2
   private val Outages        = Delays.Stretch + 3
 
-  private val Chance = 1e-5
+  private val Chance = 2e-5
 
   private def longest(timeout: Span, tries: Int): Span = Retransmission.wait(timeout, tries)((_, _) => true)
 
@@ -110,13 +110,14 @@ object LossyDelays:
       (lastS = 1 / (rate * (1 - one.share)), betweenS = 1 / (rate * one.share))
     val outages =
       outage.map(one => (lastS = one.lasts.toSeconds, betweenS = (one.every - one.lasts).toSeconds))
-    val longestS = outages.fold(0.0)(_.lastS).max(bursts.fold(0.0)(-_.lastS * StrictMath.log(Chance)))
     val share    = loss.fold(0.0)(_.share)
+    val burstS   = bursts.fold(0.0)(_.lastS * StrictMath.log(share / Chance).max(0))
+    val longestS = outages.fold(0.0)(_.lastS).max(burstS)
     val timeout  = Span.ofNanos(math.round(timeoutS * 1e9 / DelayTable.GrainNs) * DelayTable.GrainNs)
     val tries    = Iterator
       .from(0)
       .find: n =>
-        (share == 0 || StrictMath.pow(share, n + 1) <= Chance * 1.001) &&
+        (share == 0 || StrictMath.pow(share, n + 1) <= Chance) &&
           longest(timeout, n).toSeconds >= longestS
       .get
     if loss.isEmpty && outage.isEmpty then base
