@@ -155,9 +155,14 @@ final class FlightAssembler(
             opened.closing(workers(settings.planning)): threads =>
               threads.close()
               Future.successful(Done)
-        val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)
-        val flown        = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
-        val hold         = Hold()
+        val endCondition = EndCondition(
+          settings.scenario,
+          plan.loop == LoopKind.Paused,
+          settings.isDecentralised(plan),
+          monitor
+        )
+        val flown = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
+        val hold  = Hold()
 
         val network = settings.between.filter(_ => reached.apart.nonEmpty).map: link =>
           val inScene = Moment(settings.world.scene, Vector.empty)
