@@ -286,8 +286,9 @@ final class FlightAssembler(
       monitor: FlightMonitor
   ): Fleet =
     def taught(lessons: Lessons, explore: Double) =
-      chosen.learningIn(plan.fleet(settings), lessons, explore, plan.seed): (vehicle, decision, news) =>
-        RecordedPlan.learned(clock.now(), vehicle, decision, news).foreach(monitor.offer)
+      chosen.learningIn(plan.fleet(settings), lessons, explore, plan.seed, settings.period):
+        (vehicle, decision, news) =>
+          RecordedPlan.learned(clock.now(), vehicle, decision, news).foreach(monitor.offer)
     chosen.learning match
       case None                                  => plan.fleet(settings)
       case Some(Learning.Again(explore, news))   => taught(LessonsAgain(news), explore)
