@@ -14,4 +14,25 @@ object SensorKind:
   val Default: Map[String, SensorKind] =
     Map("imu" -> Imu, "magnetometer" -> Magnetometer, "gps" -> Gps, "barometer" -> Barometer)
 
+  /** The sensors of a vehicle of this type whose settings name none, as in AirSim: a car has a GPS, a camera
+    * nothing.
+    */
+  def default(vehicleType: String): Map[String, SensorKind] =
+    if vehicleType.equalsIgnoreCase(WorldSettings.PhysXCar) then Map("gps" -> Gps)
+    else if vehicleType.equalsIgnoreCase(WorldSettings.ComputerVision) then Map.empty
+    else Default
+
   def of(number: Double): Option[SensorKind] = values.find(_.number.toDouble == number)
+
+/** The sensors that a part of the settings lists.
+  *
+  * @param kinds the listed kinds
+  * @param enabled those switched on, keyed by name
+  */
+final case class ListedSensors(
+    kinds: Set[SensorKind] = Set.empty,
+    enabled: Map[String, SensorKind] = Map.empty
+):
+  /** With those of `unless` for kinds of which none is listed. */
+  def over(unless: Map[String, SensorKind]): Map[String, SensorKind] =
+    unless.filterNot((_, kind) => kinds(kind)) ++ enabled
