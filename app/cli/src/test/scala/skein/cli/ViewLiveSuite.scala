@@ -211,7 +211,11 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
         flies("first"),
         step("click", "#abort"),
         flies("second"),
-        step("ask", "listed", "[...document.querySelectorAll('#flights option')].map(one => one.textContent)"),
+        step(
+          "ask",
+          "listed",
+          "[...document.querySelectorAll('#flights option')].map(one => one.textContent)"
+        ),
         step("ask", "chosen", "document.getElementById('flights').value"),
         step("click", "#pause"),
         step("wait", "skein.flight.paused")

@@ -96,7 +96,8 @@ final class EnvironmentSimulator private (
     behind = behind + by
     if notedAt.forall(now.since(_) >= NoteEvery) then
       notedAt = Some(now)
-      val detail = s"the environment's steps take too long: it is ${behind.toSeconds.fixed(2)} s behind the clock"
+      val detail =
+        s"the environment's steps take too long: it is ${behind.toSeconds.fixed(2)} s behind the clock"
       recorder.offer(Event(now, EventKind.ClockDrift, None, detail))
 
   private def stepOnce(): Unit = process.step(velocities) match

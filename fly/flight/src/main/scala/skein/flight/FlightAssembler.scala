@@ -274,9 +274,9 @@ final class FlightAssembler(
               .map(_ => Some(client))
 
   private def unlessCalledOff[A](plan: FlightPlan)(waiting: Future[A]): Future[A] =
-    val ready  = Promise[A]().completeWith(waiting)
-    val every  = FlightAssembler.LookEvery.toDuration
-    val calls  = system.scheduler.scheduleWithFixedDelay(every, every): () =>
+    val ready = Promise[A]().completeWith(waiting)
+    val every = FlightAssembler.LookEvery.toDuration
+    val calls = system.scheduler.scheduleWithFixedDelay(every, every): () =>
       calledOff(plan.id).foreach(why => ready.tryFailure(CannotFly(why)))
     ready.future.andThen(_ => calls.cancel())
 

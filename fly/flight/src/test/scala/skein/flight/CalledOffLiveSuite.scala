@@ -16,11 +16,11 @@ import skein.units.*
 
 /** Flights that are called off before they begin, by the real clock and with recordings on the disk. */
 class CalledOffLiveSuite extends munit.FunSuite:
-  private given system: ActorSystem    = ActorSystem("called-off")
-  private given ExecutionContext       = system.dispatcher
-  override def afterAll(): Unit        = Await.result(system.terminate(), 30.seconds): Unit
-  private val folder                   = FunFixture[Path](_ => Files.createTempDirectory("called-off"), Files.delete(_))
-  private def names(folder: Path)      = Files.list(folder).toScala(Vector).map(_.getFileName.toString)
+  private given system: ActorSystem = ActorSystem("called-off")
+  private given ExecutionContext    = system.dispatcher
+  override def afterAll(): Unit     = Await.result(system.terminate(), 30.seconds): Unit
+  private val folder = FunFixture[Path](_ => Files.createTempDirectory("called-off"), Files.delete(_))
+  private def names(folder: Path) = Files.list(folder).toScala(Vector).map(_.getFileName.toString)
   private def settings(by: Option[SolverChoice]) =
     FlySettings(
       List(LoopKind.Stream),
@@ -66,7 +66,7 @@ class CalledOffLiveSuite extends munit.FunSuite:
     val flown     = settings(None)
     val at        = Address("127.0.0.1", silent.getLocalPort)
     val assembler = FlightAssembler(TcpTransport(), Clock.system, flown, Some(at))
-    val started   = LiveFlights.start(assembler, flown.plans.takeRight(1), folder, abandoned = abandoned.future)
+    val started = LiveFlights.start(assembler, flown.plans.takeRight(1), folder, abandoned = abandoned.future)
     for
       _ <- Future(silent.accept())
       _ = assertEquals(names(folder).count(_.endsWith(".duckdb")), 1)

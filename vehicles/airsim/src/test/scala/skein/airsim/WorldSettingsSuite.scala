@@ -13,7 +13,11 @@ class WorldSettingsSuite extends munit.FunSuite:
   test("SimMode sets the type of vehicles without one, and a world may have vehicles of both types"):
     assertEquals(
       WorldSettings.parse("""{"SimMode": "Car"}""").map(_.vehicles),
-      Right(Vector(VehicleSettings("PhysXCar", vehicleType = "PhysXCar", sensors = SensorKind.default("PhysXCar"))))
+      Right(Vector(VehicleSettings(
+        "PhysXCar",
+        vehicleType = "PhysXCar",
+        sensors = SensorKind.default("PhysXCar")
+      )))
     )
     val mixed = WorldSettings.parse(
       """{"SimMode": "Car", "Vehicles": {"A": {"X": 3}, "B": {"VehicleType": "SimpleFlight"}}}"""

@@ -8,7 +8,8 @@ import skein.units.{Quaternion, Vector3}
   * @param position mounting position on the vehicle, front right down, m
   * @param orientation relative to the vehicle
   * @param distortion K1, K2, K3, P1, P2 of the Brown-Conrady model
-  * @param isZoomed whether a client has set its field of view, lens or film: then it holds for all image types
+  * @param isZoomed whether a client has set its field of view, lens or film: then it holds for all image
+  *   types
   */
 final private[simulator] case class Camera(
     position: Vector3,

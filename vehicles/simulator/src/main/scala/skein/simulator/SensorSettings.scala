@@ -88,7 +88,11 @@ private[simulator] object SensorSettings:
       ).toMap,
       sensors(SensorKind.Lidar)(lidar),
       sensors(SensorKind.Distance)((sensor, flies) =>
-        Ranger(placeOf(sensor, downM(flies)), sensor.number("MinDistance", 0.2), sensor.number("MaxDistance", 40))
+        Ranger(
+          placeOf(sensor, downM(flies)),
+          sensor.number("MinDistance", 0.2),
+          sensor.number("MaxDistance", 40)
+        )
       )
     )
 

@@ -48,7 +48,11 @@ object SettingsFile:
   private def checkWorld(root: SettingsSection, world: WorldSettings): Unit =
     root.number("ClockSpeed", 1, 0.001, 1000): Unit
     if world.windNed.norm > VehicleLimits.FastestWindMps then
-      root.fail("Wind", s"at most ${VehicleLimits.FastestWindMps.round} m/s", s"${world.windNed.norm.round} m/s")
+      root.fail(
+        "Wind",
+        s"at most ${VehicleLimits.FastestWindMps.round} m/s",
+        s"${world.windNed.norm.round} m/s"
+      )
     val origin = root.section("OriginGeopoint")
     origin.number("Latitude", 0, -90, 90): Unit
     origin.number("Longitude", 0, -180, 180): Unit

@@ -86,12 +86,12 @@ class ImageSuite extends munit.FunSuite:
     assertEqualsFloat(info.fov, 60, 1e-3f)
 
   test("each image type has its own field of view, until a client sets the camera's"):
-    val text = """{"Vehicles": {"A": {"Cameras": {"front_center": {"CaptureSettings": [
+    val text  = """{"Vehicles": {"A": {"Cameras": {"front_center": {"CaptureSettings": [
       {"ImageType": 0, "FOV_Degrees": 60}, {"ImageType": 1, "FOV_Degrees": 30}]}}}}}"""
     val bench = Bench(Seq("A"), text = text)
     def fovs  =
-      for kind <- Seq(ImageType.Scene, ImageType.DepthPlanar, ImageType.Segmentation) yield
-        (Shots.view(bench.simulation, 0, "front_center", kind.ordinal).fovDeg * 1000).round
+      for kind <- Seq(ImageType.Scene, ImageType.DepthPlanar, ImageType.Segmentation)
+      yield (Shots.view(bench.simulation, 0, "front_center", kind.ordinal).fovDeg * 1000).round
     bench.tell(
       "simSetCameraPose",
       Str("0"),
@@ -104,7 +104,8 @@ class ImageSuite extends munit.FunSuite:
     assertEquals(fovs, Seq(45_000L, 45_000L, 45_000L))
 
   test("lidars of cars and cameras look ahead from above the vehicle, and those of multirotors down"):
-    val lidar = """"DefaultSensors": {"L": {"SensorType": 6, "Enabled": true}, "D": {"SensorType": 5, "Enabled": true}}"""
+    val lidar =
+      """"DefaultSensors": {"L": {"SensorType": 6, "Enabled": true}, "D": {"SensorType": 5, "Enabled": true}}"""
     val text  = s"""{"SimMode": "Car", $lidar, "Vehicles": {"A": {}, "B": {"VehicleType": "SimpleFlight"}}}"""
     val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
     val read  = SensorSettings.read(text).fold(error => fail(error.message), identity)
