@@ -14,14 +14,6 @@ object SensorKind:
   val Default: Map[String, SensorKind] =
     Map("imu" -> Imu, "magnetometer" -> Magnetometer, "gps" -> Gps, "barometer" -> Barometer)
 
-  /** The sensors of a vehicle of this type whose settings name none, as in AirSim: a car has a GPS, a camera
-    * nothing.
-    */
-  def default(vehicleType: String): Map[String, SensorKind] =
-    if vehicleType.equalsIgnoreCase(WorldSettings.PhysXCar) then Map("gps" -> Gps)
-    else if vehicleType.equalsIgnoreCase(WorldSettings.ComputerVision) then Map.empty
-    else Default
-
   def of(number: Double): Option[SensorKind] = values.find(_.number.toDouble == number)
 
 /** The sensors that a part of the settings lists.

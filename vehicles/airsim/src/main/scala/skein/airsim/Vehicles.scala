@@ -36,5 +36,5 @@ object Vehicles:
       agent.startPositionNed.copy(z = 0),
       agent.startHeading,
       vehicleType,
-      sensors = SensorKind.default(vehicleType)
+      sensors = WorldSettings.usualSensors(vehicleType)
     )

@@ -69,6 +69,14 @@ object WorldSettings:
 
   private val CarMode = "Car"
 
+  /** The sensors of a vehicle of this type whose settings name none, as in AirSim: a car has a GPS, a camera
+    * nothing.
+    */
+  def usualSensors(vehicleType: String): Map[String, SensorKind] =
+    if vehicleType.equalsIgnoreCase(PhysXCar) then Map("gps" -> SensorKind.Gps)
+    else if vehicleType.equalsIgnoreCase(ComputerVision) then Map.empty
+    else SensorKind.Default
+
   /** AirSim's default home, in degrees and m above the sea. */
   val DefaultOrigin: GeoLocation = GeoLocation(47.641468, -122.140165, Metres(122))
 
@@ -140,7 +148,7 @@ object WorldSettings:
         Vector(VehicleSettings(
           usual,
           vehicleType = usual,
-          sensors = shared.over(SensorKind.default(usual))
+          sensors = shared.over(usualSensors(usual))
         ))
       else vehicles,
       GeoLocation(
@@ -186,7 +194,7 @@ object WorldSettings:
         case "Inactive" | "Disarmed" => false
         case other => fields.fail("DefaultVehicleState", "Armed, Inactive or Disarmed", s"'$other'")
       ,
-      sensors(fields.sections("Sensors")).over(shared.over(SensorKind.default(vehicleType)))
+      sensors(fields.sections("Sensors")).over(shared.over(usualSensors(vehicleType)))
     )
 
   /** Unknown kinds, which forks have, count as not read. */

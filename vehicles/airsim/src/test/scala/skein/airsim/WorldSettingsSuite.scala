@@ -16,7 +16,7 @@ class WorldSettingsSuite extends munit.FunSuite:
       Right(Vector(VehicleSettings(
         "PhysXCar",
         vehicleType = "PhysXCar",
-        sensors = SensorKind.default("PhysXCar")
+        sensors = WorldSettings.usualSensors("PhysXCar")
       )))
     )
     val mixed = WorldSettings.parse(
