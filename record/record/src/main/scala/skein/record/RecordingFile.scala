@@ -101,12 +101,15 @@ private[record] object RecordingFile:
     execute(connection, s"INSERT INTO format VALUES (${RecordingFormat.version})")
     Table.all.foreach(table => execute(connection, table.create))
 
-  /** Opens a connection to this file only, with one thread, and without extensions from the network. */
+  /** Opens a connection to this file only, with one thread, and without extensions from the network. A new
+    * file can be read by every client since DuckDB 1.0.
+    */
   def connect(file: Path, readOnly: Boolean): DuckDBConnection =
     if isUnnameable(file) then throw SQLException(Unnameable)
     val properties = Properties()
     properties.setProperty("duckdb.read_only", readOnly.toString)
     properties.setProperty("threads", "1")
+    properties.setProperty("storage_compatibility_version", "v1.0.0")
     properties.setProperty("autoinstall_known_extensions", "false")
     // Absolute, since `md:x` or `s3://x` would be a database elsewhere.
     DriverManager
