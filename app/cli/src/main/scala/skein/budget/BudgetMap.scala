@@ -91,9 +91,11 @@ enum Legs(val text: String, val perRoundTrip: Double):
 object BudgetMap:
   val CsvHeader = "periodMs,meanMs,jitterMs,objective,sd,episodes,deviation"
 
-  /** All maps as JSON: the question, and for each map its sentence, the paused loop's value and the cells. */
+  /** All maps as JSON, in ASCII: the question, and for each map its sentence, the paused loop's value and the
+    * cells.
+    */
   def json(maps: Vector[BudgetMap], atJitterMs: Double): String =
-    write(maps.map(Shown.of(_, atJitterMs)), indent = 1)
+    write(maps.map(Shown.of(_, atJitterMs)), indent = 1, escapeUnicode = true)
 
   private final case class Cell(
       meanMs: Double,

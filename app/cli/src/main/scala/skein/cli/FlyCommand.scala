@@ -265,7 +265,8 @@ final class FlyCommand(using Scenarios)
       else Report.read(landed.map(_.plan.file(out))).left.map(_.map(_.message).mkString("\n"))
     val told =
       read.flatMap: flights =>
-        shown.tables(ReportSections.of(flights), ReportSections.text(flights))
+        val files   = flights.all.map(_.flight.id).map(id => out.resolve(FlightPlan.fileName(id)).toString)
+        shown.tables(ReportSections.of(flights), ReportSections.text(flights), "recordings" -> files)
         val written = Report.write(flights, out).flatMap: output =>
           output.told.foreach(shown.say)
           output.whole
