@@ -6,6 +6,7 @@ import contextlib
 import fcntl
 import gc
 import os
+import signal
 import tempfile
 import threading
 from collections.abc import Iterator
@@ -75,9 +76,18 @@ def start() -> Any:
                 "-Xlog:disable",
                 classpath=installed.jars,
                 convertStrings=True,
+                interrupt=False,
             )
+            _keep_ctrl_c()
             os.register_at_fork(after_in_child=_fork)
     return jpype
+
+
+def _keep_ctrl_c() -> None:
+    """Gives Ctrl-C back to Python: Java's handler would report it later, and not end a call that waits."""
+    handler = signal.getsignal(signal.SIGINT)
+    if handler is not None and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, handler)
 
 
 def _library(java: Any) -> Any:
