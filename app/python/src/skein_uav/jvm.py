@@ -6,7 +6,6 @@ import contextlib
 import fcntl
 import gc
 import os
-import signal
 import tempfile
 import threading
 from collections.abc import Iterator
@@ -74,20 +73,13 @@ def start() -> Any:
                 "--enable-native-access=ALL-UNNAMED",
                 "--sun-misc-unsafe-memory-access=allow",
                 "-Xlog:disable",
+                "-Xrs",  # signals, Ctrl-C above all, stay Python's
                 classpath=installed.jars,
                 convertStrings=True,
-                interrupt=False,
+                interrupt=True,  # else JPype has handlers of its own, which report Ctrl-C late and crash by SIGTERM
             )
-            _keep_ctrl_c()
             os.register_at_fork(after_in_child=_fork)
     return jpype
-
-
-def _keep_ctrl_c() -> None:
-    """Gives Ctrl-C back to Python: Java's handler would report it later, and not end a call that waits."""
-    handler = signal.getsignal(signal.SIGINT)
-    if handler is not None and threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGINT, handler)
 
 
 def _library(java: Any) -> Any:
