@@ -51,6 +51,75 @@ def test_a_spread_has_a_column_for_each_of_its_numbers():
     }
 
 
+def test_words_among_numbers_have_a_column_of_their_own():
+    def columns(title, *cells):
+        made = tables.frame({"columns": [title], "rows": [[cell] for cell in cells], "note": ""})
+        return {name: [None if one != one else one for one in made[name]] for name in made}
+
+    assert columns("vs paused", "+30.4 %", "starved", None) == {
+        **{"vs paused %": [30.4, None, None], "vs paused note": [None, "starved", None]},
+    }
+    assert columns("last 10 s m", 8.5, "< 10 s") == {
+        **{"last 10 s m": [8.5, None], "last 10 s m note": [None, "< 10 s"]},
+    }
+    assert columns("gap m", "3.27 ± 0.01, 3.2 … 3.5, 2 never", "3.5, 1 too short", "4 never", 2.5) == {
+        "gap m": [3.27, 3.5, None, 2.5],
+        "gap m sd": [0.01, None, None, None],
+        "gap m min": [3.2, None, None, None],
+        "gap m max": [3.5, None, None, None],
+        "gap m note": ["2 never", "1 too short", "4 never", None],
+    }
+    assert columns("<at", "12", "stream") == {"<at": ["12", "stream"]}
+
+
+def test_recordings_are_in_the_order_of_the_tables(tmp_path):
+    flights = skein.fly(loop=["predictive", "stream"], link=["vpn", "none"], duration_s=2, out=tmp_path)
+    table = next(iter(flights.tables.values()))
+    recorded = [skein.load(one)["flight"].iloc[0] for one in flights.recordings]
+    assert [(one.loop, one.link) for one in recorded] == list(zip(table["loop"], table["link"], strict=True))
+
+
+def test_the_recording_of_a_live_flight_comes_before_its_twin():
+    flights = skein.fly(link="none", duration_s=2, clock="real")
+    assert [skein.load(one)["flight"].clock[0] for one in flights.recordings] == ["real", "virtual"]
+
+
+def test_flights_without_a_terminal_that_shows_everything_have_the_columns_of_others(flights, monkeypatch):
+    monkeypatch.setenv("LC_ALL", "C")
+    other = skein.fly(link="vpn", duration_s=15, seed=3)
+    assert list(other.tables) == list(flights.tables)
+    for title, table in flights.tables.items():
+        assert other[title].columns.tolist() == table.columns.tolist()
+        assert other[title].attrs == table.attrs
+
+
+def test_beside_a_configuration_flights_are_those_of_the_file(tmp_path):
+    conf = tmp_path / "two.conf"
+    conf.write_text("skein.fly { loops = [sequential], links = [none], duration = 3 s, seed = 5 }")
+    flights = skein.fly(config=conf)
+    with flights.load() as recording:
+        flight = recording["flight"].iloc[0]
+        assert (flight.loop, flight.link, flight.durationMs, flight.seed) == ("sequential", "none", 3000, 5)
+    given = arguments.planned(None, ["none", "vpn"], 5, None, {"config": conf})
+    assert given == {"loop": [None], "link": ["none", "vpn"], "duration": "5000ms"}
+    plain = arguments.planned(None, None, None, None, {})
+    assert plain == {"loop": ["stream"], "link": ["direct"], "duration": "60000ms"}
+
+
+def test_a_failed_flight_leaves_the_recordings_and_says_where(monkeypatch, tmp_path):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with pytest.raises(skein.SkeinError, match=f"was written before is in {tmp_path}/skein-"):
+        skein.fly(link="none", duration_s=2, pursuer=lambda seen: 1 / 0)
+    assert list(tmp_path.glob("skein-*/*.duckdb"))
+
+
+def test_a_search_leaves_unsaid_numbers_to_the_command(monkeypatch):
+    given = {}
+    monkeypatch.setattr("skein_uav.commands.run", lambda command, **options: given.update(options) or {"": pd.DataFrame()})
+    skein.search("surround")
+    assert given["candidates"] is None and given["episodes"] is None
+
+
 def test_a_notebook_shows_the_first_table_and_the_reports_figures(flights):
     page = flights._repr_html_()
     assert "closest m" in page and page.count("<img") >= 3
@@ -68,6 +137,8 @@ def test_a_recording_says_how_old_each_decision_was(flights):
         assert counted.n[0] == (decisions.vehicle == "Pursuer").sum()
         with pytest.raises(KeyError, match="expected one of .*decision.*, got 'nothing'"):
             recording["nothing"]
+        assert {name: len(table.columns) > 1 for name, table in recording.items()}.keys() == set(recording)
+        assert "format" not in recording and recording.sql("SELECT version FROM format").size == 1
 
 
 def test_equal_seeds_fly_equal_flights(flights, tmp_path):

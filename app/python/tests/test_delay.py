@@ -724,6 +724,8 @@ def test_pettingzoo_finds_nothing_wrong():
     from skein_uav.delay import DelayParallelEnv
 
     parallel_api_test(DelayParallelEnv(env, STEP_S, link="vpn", pending=2), num_cycles=200)
+    with pytest.raises(ValueError, match="substeps: expected none"):
+        DelayParallelEnv(env, STEP_S, every=2)
     env = DelayParallelEnv(parallel(), STEP_S, link="correlated:10s,uniform:0ms..500ms")
     for seed in (4, None, None):
         told, _ = env.reset(seed=seed)

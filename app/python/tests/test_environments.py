@@ -1,6 +1,8 @@
 import contextlib
 import gc
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -79,6 +81,30 @@ def test_seeds_of_any_size_repeat_episodes(make):
     assert np.array_equal(one.reset(seed=large)[0], one.reset(seed=large)[0])
     with pytest.raises(ValueError, match="seed: expected a whole number from 0, got -1"):
         env.reset(seed=[-1, 2])
+
+
+def test_a_seed_that_is_none_is_drawn_before_the_first_episode(make):
+    def places(*seeds):
+        return make(2, start_within_m=(5, 30)).reset(seed=list(seeds))[0][:, :2]
+
+    drawn = places(None, 5)
+    assert np.array_equal(drawn[1], places(0, 5)[1]) and not np.array_equal(drawn[0], places(0, 5)[0])
+    assert not np.array_equal(drawn[0], places(None, 5)[0])
+
+
+def test_ctrl_c_is_pythons_while_java_runs():
+    script = """
+import os, signal, time
+import gymnasium, skein_uav.environments
+gymnasium.make("skein_uav/Pursuit-v0").reset(seed=0)
+try:
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(600)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    ended = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, timeout=300)
+    assert (ended.returncode, ended.stdout) == (0, "interrupted\n")
 
 
 def test_java_is_started_once_by_many_threads():
@@ -292,6 +318,20 @@ def _walk(env):
     for step in range(20):
         seen.append(env.step(np.full((3, 1), np.cos(step), np.float32))[0])
     return np.stack(seen)
+
+
+def test_a_server_ends_though_a_forked_process_still_lives():
+    from skein_uav.served import Server
+
+    server = Server()
+    # It keeps the server's input open, as a fork of this process does.
+    living = subprocess.Popen(["sleep", "600"], pass_fds=[server._process.stdin.fileno()])
+    try:
+        server.close()
+        assert not server.path.exists()
+    finally:
+        living.kill()
+        living.wait()
 
 
 def test_behind_a_socket_it_is_the_same_in_forked_processes_too(make):

@@ -29,6 +29,17 @@ def test_each_policy_flies_alone_and_no_flight_that_nobody_asked_for(tmp_path):
     assert len(repr(both)) < 1000 and "recordings: " in repr(both)
 
 
+def test_a_policy_flies_with_the_turn_rate_that_it_was_trained_with(tmp_path):
+    for role, rate in (("pursuer", 2.5), ("evader", 0.5)):
+        flights = skein.fly(link="none", duration_s=3, turn_rate_rad_per_s=rate, out=tmp_path / role, **{role: lambda _: 1.0})
+        with flights.load() as recording:
+            made = recording["decision"].query(f"vehicle == '{role.title()}'")
+        turned = (made.headingRad - made.headingBeforeRad + np.pi) % (2 * np.pi) - np.pi
+        assert len(made) > 20 and np.allclose(turned, rate * made.elapsedMs / 1000, atol=1e-6)
+    with pytest.raises(TypeError, match="turn_rate_rad_per_s: expected with a pursuer or an evader"):
+        skein.fly(turn_rate_rad_per_s=2.0)
+
+
 def test_a_policy_that_fails_ends_the_flight_with_its_words(tmp_path):
     def broken(seen):
         raise ZeroDivisionError("no such luck")

@@ -178,6 +178,9 @@ class Kept:
     rad: float = 0.0
 
 
+SHARED: list = []
+
+
 WRONG = [
     ("if seen.own.north_m > 3: pass", "branches on a number .* write where\\(condition, a, b\\)"),
     ("while seen.own.north_m > 3: pass", "branches .* write a loop over a range that is known"),
@@ -383,11 +386,11 @@ def test_a_memory_is_of_one_form_and_belongs_to_one_vehicle():
         scenario(lambda seen, memory: (seen.along(0.0, 1.0), memory.rad), Kept()).text()
     with pytest.raises(Untraceable, match="expected a memory of floats, .* got str 'north'"):
         scenario(lambda seen, memory: (seen.along(0.0, 1.0), memory), "north").text()
-    kept = []
+    SHARED.clear()
 
     def shared(seen):
-        kept.append(seen.own.north_m)
-        return seen.along(kept[0] - seen.own.east_m, 1.0)
+        SHARED.append(seen.own.north_m)
+        return seen.along(SHARED[0] - seen.own.east_m, 1.0)
 
     class Two(Scenario):
         def vehicles(self):
@@ -418,3 +421,77 @@ def test_what_a_scenario_lacks_is_told():
         ring.Ring().write("patrol.txt")
     with pytest.raises(ValueError, match="last_s or after_s, got both"):
         Series("a", "m", lambda now: 0.0).mean("a", last_s=1, after_s=2)
+
+
+class Keeping(Scenario):
+    count = 0
+    seen = []
+    gains = np.zeros(2)
+
+    def vehicles(self):
+        yield Vehicle("Own", getattr(self, self.name))
+
+    def counts(self, seen):
+        self.count += 1
+        return seen.along(0.0, 1.0)
+
+    def lists(self, seen):
+        self.seen.append(seen.own.north_m)
+        return seen.along(0.0, 1.0)
+
+    def learns(self, seen):
+        self.gains[0] += 1.0
+        return seen.along(0.0, self.gains[0])
+
+    def looks(self, seen):
+        self.north_m = seen.own.north_m
+        return seen.along(0.0, 1.0)
+
+    @functools.cached_property
+    def far_m(self):
+        return 3.0
+
+    def caches(self, seen):
+        return seen.along(0.0, self.far_m)
+
+
+@pytest.mark.parametrize("name, told", [("counts", "count"), ("lists", "seen"), ("learns", "gains"), ("looks", "north_m")])
+def test_what_a_policy_keeps_outside_its_memory_is_refused_with_its_line(name, told):
+    made = Keeping()
+    made.name = name
+    line = getattr(Keeping, name).__code__.co_firstlineno + 1
+    with pytest.raises(Untraceable, match=f"test_scenario.py:{line}: self.{told}.*\n  it changes self.{told}, but is called"):
+        made.text()
+
+
+def test_a_cached_property_is_nothing_kept_and_a_variable_of_the_closure_is():
+    made = Keeping()
+    made.name = "caches"
+    assert "does along" in made.text()
+    count = 0
+
+    def counting(seen):
+        nonlocal count
+        count += 1
+        return seen.along(0.0, float(count))
+
+    with pytest.raises(Untraceable, match="count \\+= 1\n  it changes count"):
+        scenario(counting).text()
+
+
+def test_what_a_measure_keeps_is_refused():
+    class Closest(Scenario):
+        least_m = 1000.0
+
+        def vehicles(self):
+            yield Vehicle("Own", lambda seen: hover())
+
+        def closest(self, now):
+            self.least_m = f.minimum(self.least_m, now.vehicles[0].north_m)
+            return self.least_m
+
+        def series(self):
+            yield Series("closest", "m", self.closest)
+
+    with pytest.raises(Untraceable, match="it changes self.least_m"):
+        Closest().text()

@@ -186,3 +186,38 @@ def test_a_field_that_is_no_parameter_is_no_setting():
             yield Vehicle("A", lambda seen: hover(), speed_mps=self.pace_mps)
 
     assert listed(Fixed()) == {}
+
+
+@dataclass
+class Clamped(Straight):
+    pace_mps: float = 6.0
+
+    def __post_init__(self):
+        if self.pace_mps > 8:
+            self.pace_mps = 8.0
+
+
+@dataclass
+class Least(Straight):
+    pace_mps: float = 6.0
+
+    def __post_init__(self):
+        self.pace_mps = min(self.pace_mps, 8.0)
+
+
+@dataclass
+class Helped(Straight):
+    pace_mps: float = 6.0
+
+    def __post_init__(self):
+        self.clamp()
+
+    def clamp(self):
+        if self.pace_mps > 8:
+            object.__setattr__(self, "pace_mps", 8.0)
+
+
+@pytest.mark.parametrize("kind", [Clamped, Least, Helped])
+def test_a_clamp_of_a_setting_that_would_be_lost_is_refused_with_its_line(kind):
+    with pytest.raises(Untraceable, match=r"(?s)test_settings.py:\d+: .*pace_mps.* 8.*write .*__post_init__ is traced"):
+        kind().text()

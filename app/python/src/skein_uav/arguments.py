@@ -57,15 +57,21 @@ def scenario_file(scenario: Scenario | str | os.PathLike[str] | None, folder: Pa
 
 @contextlib.contextmanager
 def folder(out: str | os.PathLike[str] | None) -> Iterator[Path]:
-    """The folder of a command's files: without `out` a new temporary one, which goes if the command fails."""
+    """The folder of a command's files: without `out` a new temporary one.
+
+    If the command fails, that is removed, or named if it holds recordings or a search.
+    """
     if out is not None:
         yield Path(out)
         return
     made = Path(tempfile.mkdtemp(prefix="skein-"))
     try:
         yield made
-    except Exception:
-        shutil.rmtree(made, ignore_errors=True)
+    except Exception as error:
+        if any(made.glob("*.duckdb")) or (made / "search.json").exists():
+            error.args = (f"{error}\nwhat was written before is in {made}",)
+        else:
+            shutil.rmtree(made, ignore_errors=True)
         raise
 
 
@@ -108,11 +114,19 @@ def _option(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
-def duration(duration_s: float | None, scenario: object) -> str | None:
-    """The value of ``--duration``: by default that of a scenario's file, else 60 s."""
-    if duration_s is None:
-        return None if isinstance(scenario, Scenario) or str(scenario).endswith(".scenario") else "60000ms"
-    return milliseconds("duration_s", duration_s, "s")
+def planned(
+    loop: Any, link: Any, duration_s: float | None, scenario: object, options: Mapping[str, Any]
+) -> dict[str, Any]:
+    """The values of ``--loop``, ``--link`` and ``--duration``; beside a configuration only those that are given."""
+    is_configured = options.get("config") is not None
+    if not is_configured:
+        loop, link = "stream" if loop is None else loop, "direct" if link is None else link
+    if duration_s is not None:
+        duration = milliseconds("duration_s", duration_s, "s")
+    else:
+        has_own = is_configured or isinstance(scenario, Scenario) or str(scenario).endswith(".scenario")
+        duration = None if has_own else "60000ms"
+    return {"loop": some("loop", loop), "link": some("link", link), "duration": duration}
 
 
 def milliseconds(name: str, time: float, unit: str) -> str:

@@ -33,15 +33,16 @@ _DEADLINE_MS = 20.0
 def fly(
     scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
-    loop: str | Iterable[str] = "stream",
-    link: str | Iterable[str] = "direct",
+    loop: str | Iterable[str] | None = None,
+    link: str | Iterable[str] | None = None,
     duration_s: float | None = None,
-    seed: int = 1,
+    seed: int | None = None,
     clock: str = "virtual",
     settings: Mapping[str, Any] | None = None,
     policy: str | os.PathLike[str] | None = None,
     pursuer: Policy | None = None,
     evader: Policy | None = None,
+    turn_rate_rad_per_s: float | None = None,
     deadline_ms: float | None = None,
     out: str | os.PathLike[str] | None = None,
     verbose: bool = False,
@@ -53,16 +54,17 @@ def fly(
     ----------
     scenario : Scenario, str or path, optional
         A scenario written in Python (`skein_uav.scenario`), its file, or a name: ``surround``, ``formation``,
-        ``crossing``, ``forest``, ``convoy``, ``blind-pursuit``; by default the paper's duel. The file of a scenario
-        written in Python is saved with the results.
-    loop : str or iterable of str
-        ``paused``, ``sequential``, ``futures``, ``stream``, ``predictive`` or ``plan``.
-    link : str or iterable of str
-        A latency profile: ``none``, ``direct``, ``vpn``, ``constant:200ms``, …
+        ``crossing``, ``forest``, ``convoy``, ``shadow``, ``blind-pursuit``; by default the paper's duel. The file of a
+        scenario written in Python is saved with the results.
+    loop : str or iterable of str, optional
+        ``paused``, ``sequential``, ``futures``, ``stream`` (the default), ``predictive`` or ``plan``.
+    link : str or iterable of str, optional
+        A latency profile: ``none``, ``direct`` (the default), ``vpn``, ``constant:200ms``, …
     duration_s : float, optional
         Duration of each flight, s; by default 60 s, or that of a scenario in Python.
-    seed : int
-        Seed of every random choice, of any size. In virtual time, equal seeds give equal flights, to the last bit.
+    seed : int, optional
+        Seed of every random choice, of any size, by default 1. In virtual time, equal seeds give equal flights, to the
+        last bit.
     clock : str
         ``virtual`` (many times faster) or ``real``.
     settings : mapping, optional
@@ -76,6 +78,9 @@ def fly(
 
         Each of `policy`, `pursuer` and `evader` has flights of its own, in which all other vehicles use the scenario's
         policies. Without any of them, only the scenario's own policies are used.
+    turn_rate_rad_per_s : float, optional
+        Greatest turn rate of `pursuer` and `evader`, as in `skein_uav.environments.PursuitVectorEnv`: a policy needs the
+        one that it was trained with. By default 1 rad/s; an evader's answers are immediate turns.
     deadline_ms : float, optional
         Time within which a policy must decide, ms; if it has not, or has failed, ``fallback`` decides (``hold``,
         ``repeat`` or a policy's name), and the recording states it. The default is 20 ms for a policy in Python with
@@ -86,7 +91,8 @@ def fly(
     verbose : bool
         Shows the command's progress on ``stderr``: a bar where tqdm is installed, else the lines that it prints.
     **options
-        Any other option of ``./skein fly``, for example ``moves_in_flight=6``.
+        Any other option of ``./skein fly``, for example ``moves_in_flight=6``. With ``config``, loop, link, duration and
+        seed are by default those of the file.
 
     Returns
     -------
@@ -95,23 +101,26 @@ def fly(
     Raises
     ------
     SkeinError
-        If the command failed; with its error output.
+        If the command failed; with its error output. If flights were recorded before, it says where.
     """
     arguments.renamed("fly", options, duration="duration_s", deadline="deadline_ms", set="settings")
-    loop, link = arguments.some("loop", loop), arguments.some("link", link)
+    planned = arguments.planned(loop, link, duration_s, scenario, options)
+    if turn_rate_rad_per_s is not None and pursuer is None and evader is None:
+        raise TypeError("turn_rate_rad_per_s: expected with a pursuer or an evader in Python")
+    if seed is None and options.get("config") is None:
+        seed = 1
     with ExitStack() as served:
         folder = served.enter_context(arguments.folder(out))
         given = [(role, one) for role, one in (("pursuer", pursuer), ("evader", evader)) if one is not None]
-        policies: list[Any] = [served.enter_context(PolicyServer(one, role)).option for role, one in given]
+        policies: list[Any] = [
+            served.enter_context(PolicyServer(one, role, turn_rate_rad_per_s)).option for role, one in given
+        ]
         if given and clock == "real" and deadline_ms is None:
             deadline_ms = _DEADLINE_MS
-        before = _times(folder)
-        tables = run(
+        printed = _ran(
             "fly",
-            loop=loop,
-            link=link,
-            duration=arguments.duration(duration_s, scenario),
-            seed=folded(seed),
+            **planned,
+            seed=None if seed is None else folded(seed),
             clock=clock,
             scenario=arguments.scenario_file(scenario, folder),
             set=arguments.set_to(settings),
@@ -122,21 +131,16 @@ def fly(
             verbose=verbose,
             **options,
         )
-    made = [file for file, time in _times(folder).items() if before.get(file) != time]
-    return Flights(tables, made, folder / "report.html")
-
-
-def _times(folder: Path) -> dict[Path, int]:
-    """When each of a folder's recordings was written, ns."""
-    return {file: file.stat().st_mtime_ns for file in sorted(folder.glob("*.duckdb"))}
+    recordings = [folder / Path(one).name for one in printed["recordings"]]
+    return Flights(_tables(printed), recordings, folder / "report.html")
 
 
 @plainly
 def spread(
     scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
-    loop: str | Iterable[str] = "stream",
-    link: str | Iterable[str] = "direct",
+    loop: str | Iterable[str] | None = None,
+    link: str | Iterable[str] | None = None,
     seeds: int = 20,
     duration_s: float | None = None,
     settings: Mapping[str, Any] | None = None,
@@ -152,7 +156,7 @@ def spread(
     loop, link, duration_s, scenario, settings, verbose
         As in `fly`.
     **options
-        Any other option of ``./skein spread``.
+        Any other option of ``./skein spread``; ``config`` as in `fly`.
 
     Returns
     -------
@@ -160,14 +164,12 @@ def spread(
         Mean and spread over the seeds, by title; units are in the columns' names.
     """
     arguments.renamed("spread", options, duration="duration_s", set="settings")
-    loop, link = arguments.some("loop", loop), arguments.some("link", link)
+    planned = arguments.planned(loop, link, duration_s, scenario, options)
     with tempfile.TemporaryDirectory(prefix="skein-") as folder:
         return run(
             "spread",
-            loop=loop,
-            link=link,
+            **planned,
             seeds=seeds,
-            duration=arguments.duration(duration_s, scenario),
             scenario=arguments.scenario_file(scenario, Path(folder)),
             set=arguments.set_to(settings),
             verbose=verbose,
@@ -181,8 +183,8 @@ def search(
     *,
     family: str | None = None,
     link: str = "vpn",
-    candidates: int = 1000,
-    episodes: int = 20,
+    candidates: int | None = None,
+    episodes: int | None = None,
     settings: Mapping[str, Any] | None = None,
     vary: Mapping[str, tuple[float, float]] | None = None,
     out: str | os.PathLike[str] | None = None,
@@ -199,10 +201,10 @@ def search(
         Family of the policies to choose from: ``paper-pursuer`` by default, ``lead-pursuit``, ``neural:8x8``, …
     link : str
         A latency profile.
-    candidates : int
-        Number of candidates to try in all.
-    episodes : int
-        Number of episodes for each candidate.
+    candidates : int, optional
+        Number of candidates to try in all; by default 1000, or 40 of a scenario that flies in virtual time alone.
+    episodes : int, optional
+        Number of episodes for each candidate; by default 20, or 2 there.
     settings : mapping, optional
         Fixed settings of the scenario.
     vary : mapping, optional
@@ -341,8 +343,11 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
     SkeinError
         If the command failed; with its error output.
     """
-    printed = _ran(command, *words, verbose=verbose, **options)["tables"]
-    return Tables({table["title"]: frame(table) for table in printed})
+    return _tables(_ran(command, *words, verbose=verbose, **options))
+
+
+def _tables(printed: Mapping[str, Any]) -> Tables:
+    return Tables({table["title"]: frame(table) for table in printed["tables"]})
 
 
 def _ran(command: str, *words: str, verbose: bool = False, **options: Any) -> Any:

@@ -20,9 +20,9 @@ Observation, 9 numbers (float32), in the frame whose x-axis is the learner's las
 8  opponent's age    s     of the opponent's reading
 == ================= ===== ====================================================
 
-Action, 1 number from -1 to 1 (values beyond are clipped): the rate of turn to the right, as a share of 1 rad/s; for an
-evader an immediate turn to the right, as a share of half a turn. With ``turn_rate_rad_per_s`` it is, for both, the share
-of that rate.
+Action, 1 number from -1 to 1 (values beyond are clipped): an immediate turn to the right, as a share of the largest one.
+That is 1 rad/s times the time since the learner's previous decision, so an episode's first action turns nothing; for an
+evader half a turn. With ``turn_rate_rad_per_s`` it is, for both, that rate times that time.
 
 With ``climb_mps`` the learner also climbs and sinks, by the plants ``tilt`` and ``quadrotor``. Its action has a second
 number from -1 to 1: the vertical speed, positive up, as a share of ``climb_mps``. Its observation has four more numbers, all
@@ -409,16 +409,17 @@ def starts(within_m: Any) -> dict[str, Any]:
 def seeds_of(
     seed: int | Sequence[int | None] | None, count: int, is_reset: bool, random: np.random.Generator
 ) -> NDArray[np.int64]:
-    """A seed for each environment; -1 continues its own sequence."""
+    """A seed for each environment; -1 continues its own sequence, where there is one."""
     if isinstance(seed, (int, np.integer)):
         return np.array([folded(int(seed) + number) for number in range(count)], dtype=np.int64)
+    seeds = np.full(count, -1, dtype=np.int64) if is_reset else random.integers(0, 2**62, count)
     if seed is not None:
         if len(seed) != count:
             raise ValueError(f"seed: expected {count} of them, got {len(seed)}")
-        return np.array([-1 if one is None else folded(one) for one in seed], dtype=np.int64)
-    if is_reset:
-        return np.full(count, -1, dtype=np.int64)
-    return random.integers(0, 2**62, count)
+        for number, one in enumerate(seed):
+            if one is not None:
+                seeds[number] = folded(one)
+    return seeds
 
 
 def _mask(options: dict[str, Any] | None, count: int) -> Flags | None:

@@ -73,8 +73,10 @@ def start() -> Any:
                 "--enable-native-access=ALL-UNNAMED",
                 "--sun-misc-unsafe-memory-access=allow",
                 "-Xlog:disable",
+                "-Xrs",  # signals, Ctrl-C above all, stay Python's
                 classpath=installed.jars,
                 convertStrings=True,
+                interrupt=True,  # else JPype has handlers of its own, which report Ctrl-C late and crash by SIGTERM
             )
             os.register_at_fork(after_in_child=_fork)
     return jpype

@@ -32,6 +32,8 @@ class PolicyServer:
         calls.
     role : {'pursuer', 'evader'}
         The side that it decides for.
+    turn_rate_rad_per_s : float, optional
+        Its greatest turn rate; by default 1 rad/s for a pursuer, and an evader turns immediately.
 
     Attributes
     ----------
@@ -39,10 +41,11 @@ class PolicyServer:
         The value for ``./skein fly --policy``.
     """
 
-    def __init__(self, policy: Policy, role: str) -> None:
+    def __init__(self, policy: Policy, role: str, turn_rate_rad_per_s: float | None = None) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="skein-")
         path = str(Path(self._folder.name) / "policy")
-        self.option = f"unix:{role}:{path}"
+        rate = "" if turn_rate_rad_per_s is None else f"@{turn_rate_rad_per_s:.12g}"
+        self.option = f"unix:{role}{rate}:{path}"
 
         class Flight(StreamRequestHandler):
             def handle(self) -> None:

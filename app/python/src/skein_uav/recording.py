@@ -45,7 +45,7 @@ class Recording(Mapping[str, pd.DataFrame]):
             raise SkeinError(f"expected a recording, got {self.path}, which is no file")
         try:
             self._database = duckdb.connect(str(self.path), read_only=True)
-            self._names = [name for (name,) in self._database.execute("SHOW TABLES").fetchall()]
+            self._names = [name for (name,) in self._database.execute("SHOW TABLES").fetchall() if name != "format"]
         except duckdb.Error as mistake:
             raise SkeinError(f"expected a recording, got {self.path}: {str(mistake).splitlines()[0]}") from None
         if "decision" not in self._names:

@@ -56,7 +56,8 @@ class Flights:
     tables : dict of str to DataFrame
         The report's tables, by title; units are in the columns' names.
     recordings : list of Path
-        One DuckDB file per flight; `skein_uav.load` opens one.
+        One DuckDB file per flight, in the order of the tables; the virtual twins of live flights come last.
+        `skein_uav.load` opens one.
     report : Path
         A page with tables and pictures.
     """

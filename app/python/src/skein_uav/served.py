@@ -18,6 +18,8 @@ from .batch import Block, Flags
 from .errors import SkeinError
 from .installation import find
 
+_ENDS_WITHIN_S = 1.0
+
 
 class Server:
     """A Java process that runs environments for any process of this machine's user.
@@ -57,7 +59,11 @@ class Server:
         """Ends the process and all its environments."""
         assert self._process.stdin is not None and self._process.stdout is not None
         self._process.stdin.close()
-        self._process.wait()
+        try:
+            self._process.wait(_ENDS_WITHIN_S)
+        except subprocess.TimeoutExpired:  # a forked process holds its input open
+            self._process.terminate()
+            self._process.wait()
         self._process.stdout.close()
         self._folder.cleanup()
 

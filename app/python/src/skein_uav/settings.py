@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import dis
 import functools
 import inspect
 import math
-from collections.abc import Iterator, Mapping
-from types import FunctionType, MethodType, ModuleType
+import sys
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from types import CodeType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -62,15 +65,17 @@ def _code(of: type) -> str | None:
 def _copied(scenario: Any, leaves: Mapping[str, Number]) -> Any:
     """A copy with symbols, and without cached properties, which may depend on settings."""
     made = copy.copy(scenario)
-    for name in _cached(made):
+    for name in cached(made):
         del made.__dict__[name]
     for name, leaf in leaves.items():
         object.__setattr__(made, name, leaf)
     return made
 
 
-def _cached(of: Any) -> list[str]:
-    return [name for name in vars(of) if isinstance(getattr(type(of), name, None), functools.cached_property)]
+def cached(of: Any) -> list[str]:
+    """Names of an object's cached properties that have been computed."""
+    names = getattr(of, "__dict__", {})
+    return [name for name in names if isinstance(getattr(type(of), name, None), functools.cached_property)]
 
 
 def _built(scenario: Any, fields: Mapping[str, Any], now: Mapping[str, Any], graph: Graph) -> Any:
@@ -86,7 +91,7 @@ def _built(scenario: Any, fields: Mapping[str, Any], now: Mapping[str, Any], gra
         return kind(*given.args[1:], **given.kwargs)
 
     first = dict(given.arguments)
-    fresh = made_of(first)
+    fresh, stored = _storing(lambda: made_of(first))
     values, computed = {}, [name for name in _names(fresh) if name not in fields]
     for name, each in fields.items():
         if name not in given.signature.parameters:
@@ -102,17 +107,37 @@ def _built(scenario: Any, fields: Mapping[str, Any], now: Mapping[str, Any], gra
     try:
         made = made_of(first)
     except Exception as error:
-        if not computed:  # it only checks them
+        computes = ", ".join(dict.fromkeys([*computed, *stored]))
+        if not computes:  # it only checks them
             return _copied(scenario, leaves), values, leaves
         raise Untraceable(
-            f"{explained(error) or error}\n  {_code(kind)} is traced, as it computes {', '.join(computed)}; "
+            f"{explained(error) or error}\n  {_code(kind)} is traced, as it computes {computes}; "
             "with properties instead, it may branch"
         ).with_traceback(error.__traceback__) from None
-    cached = _cached(scenario)
+    lazy = cached(scenario)
     for name in _names(scenario):
-        if name not in cached and not _depends(getattr(made, name, None), made):
+        if name not in lazy and not _depends(getattr(made, name, None), made):
             object.__setattr__(made, name, getattr(scenario, name))
     return made, values, leaves
+
+
+def _storing(make: Callable[[], Any]) -> tuple[Any, list[str]]:
+    """What a function makes; and the attributes that the user's code, when it runs meanwhile, may set."""
+    codes: dict[CodeType, None] = {}
+
+    def note(frame: Any, event: str, _: Any) -> None:
+        if event == "call" and is_users(frame.f_code):
+            codes[frame.f_code] = None
+
+    before = sys.getprofile()
+    sys.setprofile(note)
+    try:
+        made = make()
+    finally:
+        sys.setprofile(before)
+    each = [one for code in codes for one in dis.get_instructions(code)]
+    stored = [one.argval for one in each if one.opname == "STORE_ATTR"]
+    return made, stored + [one.argval for one in each if one.argval in ("setattr", "__setattr__")]
 
 
 def _names(scenario: Any) -> list[str]:
@@ -130,14 +155,15 @@ def _depends(value: Any, made: Any) -> bool:
             return True
         if id(one) not in known:
             known[id(one)] = one
-            left.extend(_parts(one))
+            left.extend(parts(one))
     return False
 
 
-def _parts(of: Any) -> Iterator[Any]:
+def parts(of: Any) -> Iterator[Any]:
+    """The objects that an object holds: its items, attributes or closure."""
     if isinstance(of, Mapping):
         yield from of.values()
-    elif isinstance(of, (list, tuple, set, frozenset)):
+    elif isinstance(of, (list, tuple, set, frozenset, deque)):
         yield from of
     elif isinstance(of, np.ndarray) and of.dtype == object:
         yield from of.ravel().tolist()

@@ -10,17 +10,26 @@ import pandas as pd
 
 _NUMBER = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
 
+#: How many flights have no number, and why.
+_REST = r"(?:, (\d+ [a-z].*))?"
+
 #: Cells for people with several numbers, or one with its unit, and a suffix of the column's name for each number.
 _PARTS = [
-    (re.compile(f"({_NUMBER}) ± ({_NUMBER}), ({_NUMBER}) … ({_NUMBER})"), ("", " sd", " min", " max")),
-    (re.compile(f"({_NUMBER})/({_NUMBER})/({_NUMBER})"), (" mean", " median", " p99")),
-    (re.compile(f"({_NUMBER}) … ({_NUMBER})"), (" min", " max")),
-    (re.compile(f"({_NUMBER}) %"), (" %",)),
+    (
+        re.compile(f"({_NUMBER})(?= ±|, \\d+ [a-z])(?: ± ({_NUMBER}), ({_NUMBER}) … ({_NUMBER}))?{_REST}"),
+        ("", " sd", " min", " max"),
+    ),
+    (re.compile(f"({_NUMBER})/({_NUMBER})/({_NUMBER}){_REST}"), (" mean", " median", " p99")),
+    (re.compile(f"({_NUMBER}) … ({_NUMBER}){_REST}"), (" min", " max")),
+    (re.compile(f"({_NUMBER}) %{_REST}"), (" %",)),
 ]
 
 
 def frame(table: Mapping[str, Any]) -> pd.DataFrame:
-    """A table of ``--json``; a cell with several numbers becomes several columns."""
+    """A table of ``--json``; a cell with several numbers becomes several columns.
+
+    Words among a column's numbers are in a column of their own, ``TITLE note``; the number is then missing.
+    """
     columns: dict[str, list[Any]] = {}
     titles = list(table["columns"])
     for number, title in enumerate(titles):
@@ -42,13 +51,28 @@ def _title(titles: list[str], number: int) -> str:
 
 
 def _numbers(title: str, cells: list[Any]) -> list[tuple[str, list[Any]]]:
-    """One column, or several if each cell holds several numbers."""
+    """One column, or several if cells hold several numbers, or words among numbers."""
+    texts = [cell if isinstance(cell, str) else "" for cell in cells]
+    suffixes: tuple[str, ...] = ("",)
+    found: list[re.Match[str] | None] = [None] * len(cells)
     for pattern, names in _PARTS:
-        found = [None if cell is None else pattern.fullmatch(str(cell)) for cell in cells]
-        if any(found) and all(cell is None or one for cell, one in zip(cells, found, strict=True)):
-            stem = title.removesuffix(" min … max").removesuffix("min … max").removesuffix(" ")
-            return [
-                (f"{stem}{name}".strip(), [None if one is None else float(one[part + 1]) for one in found])
-                for part, name in enumerate(names)
-            ]
-    return [(title, cells)]
+        matches = [pattern.fullmatch(text) for text in texts]
+        if any(matches):
+            suffixes, found = names, matches
+            break
+    else:
+        if not any(texts) or not any(isinstance(cell, (int, float)) for cell in cells):
+            return [(title, cells)]
+    rows = [_parted(cell, one, suffixes) for cell, one in zip(cells, found, strict=True)]
+    stem = title.removesuffix(" min … max").removesuffix("min … max").removesuffix(" ")
+    columns = zip((*suffixes, " note"), zip(*rows, strict=True), strict=True)
+    return [(f"{stem}{name}".strip(), list(column)) for name, column in columns if set(column) != {None}]
+
+
+def _parted(cell: Any, found: re.Match[str] | None, suffixes: tuple[str, ...]) -> list[Any]:
+    """The numbers of a cell, for each suffix, and its words."""
+    if found is not None:
+        *numbers, words = found.groups()
+        return [*(None if one is None else float(one) for one in numbers), words]
+    none = [None] * len(suffixes)
+    return [cell, *none] if suffixes[0] == "" and isinstance(cell, (int, float)) else [*none, cell]

@@ -23,7 +23,7 @@ def refused(reason: str) -> Untraceable:
     frame = sys._getframe(1)
     while frame.f_back is not None and not is_users(frame.f_code):
         frame = frame.f_back
-    return _at(frame.f_code.co_filename, frame.f_lineno, reason)
+    return at_line(frame.f_code.co_filename, frame.f_lineno, reason)
 
 
 def explained(error: Exception) -> Untraceable | None:
@@ -33,13 +33,13 @@ def explained(error: Exception) -> Untraceable | None:
     if not frames:
         return None
     if re.search(r"could not convert string to float: '<.*>'", str(error)):
-        return _at(*frames[-1], f"{VALUE}; a text of it is no number: leave it a number")
+        return at_line(*frames[-1], f"{VALUE}; a text of it is no number: leave it a number")
     lacking = re.search(_LACKING, str(error))
     name = lacking[lacking.lastindex or 0] if lacking else ""
     if not isinstance(getattr(np, name, None), np.ufunc):
         return None
     instead = f"write {name} of skein_uav.formula, which takes arrays" if name in _KNOWN else "nor have formulas"
-    return _at(*frames[-1], f"NumPy has no {name} for this array; {instead}")
+    return at_line(*frames[-1], f"NumPy has no {name} for this array; {instead}")
 
 
 def shown(value: Any) -> str:
@@ -52,7 +52,8 @@ def shown(value: Any) -> str:
     return getattr(type(value), "words", None) or (text if text.startswith(kind) else f"{kind} {text}")
 
 
-def _at(name: str, line: int, reason: str) -> Untraceable:
+def at_line(name: str, line: int, reason: str) -> Untraceable:
+    """The error for a line of a file."""
     code = linecache.getline(name, line).strip()
     return Untraceable(f"{place(name, line)}{f': {code}' if code else ''}\n  {_better(reason, code)}")
 

@@ -10,6 +10,7 @@ from typing import Any
 from .actions import Action, Choice, Yaw, cases
 from .answers import answered
 from .formula import where
+from .kept import unchanged
 from .lines import Lines, quoted
 from .memory import filled, form, leaves
 from .places import place_of
@@ -48,7 +49,7 @@ class Writer:
             self.lines.add("limit", limit.kind, *(self.fixed(one, "a limit") for one in limit.numbers))
         self.drawn(len(vehicles))
         self.lines.at = place_of(self.scenario.is_over)
-        over = self.scenario.is_over(self.moment(len(vehicles), object()))
+        over = self.called(self.scenario.is_over, self.moment(len(vehicles), object()))
         if over is not False:
             if not isinstance(over, Condition):
                 raise Untraceable(f"{self.lines.at}: expected a condition from is_over, got {shown(over)}")
@@ -78,6 +79,10 @@ class Writer:
             if not isinstance(one, kind):
                 raise TypeError(f"{expected}, got {shown(one)}")
         return all_
+
+    def called(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        with unchanged(self.scenario, function):
+            return function(*arguments)
 
     def number(self, value: Any, what: str) -> Number:
         if isinstance(value, Number):
@@ -128,7 +133,7 @@ class Writer:
         seen = self.seen(place, all_, of)
         starts: list[Any] = [] if vehicle.memory is None else leaves(vehicle.memory, self.lines.at)
         if vehicle.memory is None:
-            (decided, self.lines.at), after = answered(vehicle.policy, what, seen), []
+            (decided, self.lines.at), after = self.answered(vehicle.policy, what, seen), []
         else:
             decided, after = self.remembering(vehicle, what, seen, starts, of)
         self.does(decided)
@@ -136,7 +141,7 @@ class Writer:
             first = float(start) if isinstance(start, bool) else start
             self.lines.add("remembers", self.fixed(first, "a memory"), self.remembered(next_))
         if vehicle.wants is not None:
-            wanted = vehicle.wants(seen, self.graph.leaf("ahead", "", of))
+            wanted = self.called(vehicle.wants, seen, self.graph.leaf("ahead", "", of))
             if not isinstance(wanted, tuple) or len(wanted) != 2 or vehicle.most_mps is None:
                 raise ValueError(f"{vehicle.name}: expected north and east from wants, and most_mps")
             self.lines.add(
@@ -146,11 +151,15 @@ class Writer:
                 self.fixed(vehicle.least_apart_m, "least_apart_m"),
             )
 
+    def answered(self, policy: Callable[..., Any], what: str, *arguments: Any) -> tuple[Any, str]:
+        with unchanged(self.scenario, policy):
+            return answered(policy, what, *arguments)
+
     def remembering(self, of: Vehicle, what: str, seen: Observation, starts: list[Any], decision: object) -> Any:
         """The decision of a policy with memory, and the numbers of the next memory."""
         held = (self.graph.leaf("memory", str(number), decision) for number in range(len(starts)))
         given = (one > 0.5 if isinstance(start, bool) else one for start, one in zip(starts, held, strict=True))
-        answer, self.lines.at = answered(of.policy, what, seen, filled(of.memory, given))
+        answer, self.lines.at = self.answered(of.policy, what, seen, filled(of.memory, given))
         if not isinstance(answer, tuple) or len(answer) != 2:
             raise Untraceable(f"{self.lines.at}: expected an action and the next memory, got {shown(answer)}")
         decided, memory = answer
@@ -191,7 +200,7 @@ class Writer:
         known: dict[str, tuple[Any, ...]] = {}
         for one in [*(each.of for each in measures), *self.listed("series", Series)]:
             self.lines.at = f"{place_of(one.of)}: the series {one.name}"
-            value = self.number(one.of(self.moment(count, object())), "its value")
+            value = self.number(self.called(one.of, self.moment(count, object())), "its value")
             unknown = self.graph.inputs(value.node) & {"heading", "age"}
             if unknown:
                 name = "heading_rad" if "heading" in unknown else "age_s"

@@ -24,7 +24,7 @@ class DelayParallelEnv(BaseParallelWrapper):
     ----------
     env : ParallelEnv
     step_s, ages, pending, **settings
-        As in `DelayEnv`, for every agent.
+        As in `DelayEnv`, for every agent; a decision lasts one step.
     """
 
     def __init__(
@@ -38,6 +38,8 @@ class DelayParallelEnv(BaseParallelWrapper):
         **settings: Any,
     ) -> None:
         super().__init__(env)
+        if "substeps" in settings or "every" in settings:
+            raise ValueError("substeps: expected none, as a decision lasts one step of a parallel environment")
         self._delays: dict[Any, Delay] = {}
         self._tellings: dict[Any, Telling] = {}
         self._seed = np.random.SeedSequence(seed).entropy

@@ -265,7 +265,8 @@ final class FlyCommand(using Scenarios)
       else Report.read(landed.map(_.plan.file(out))).left.map(_.map(_.message).mkString("\n"))
     val told =
       read.flatMap: flights =>
-        shown.tables(ReportSections.of(flights), ReportSections.text(flights))
+        val files   = flights.all.map(_.flight.id).map(id => out.resolve(FlightPlan.fileName(id)).toString)
+        shown.tables(ReportSections.of(flights), ReportSections.text(flights), "recordings" -> files)
         val written = Report.write(flights, out).flatMap: output =>
           output.told.foreach(shown.say)
           output.whole
@@ -297,6 +298,9 @@ private[cli] object FlyCommand:
 
   /** Loops that this process has already warmed up: its next command can skip them. */
   @volatile private var warm = Set.empty[AnyLoop]
+
+  /** Lets live flights of this process begin without a warm-up. */
+  def skipWarmUp(): Unit = warm = LoopKind.values.toSet
 
   /** Checks before any warm-up that the simulator answers and has the scenario's vehicles. A MAVLink
     * simulator is checked when its vehicles move to their starts, which needs their clocks.

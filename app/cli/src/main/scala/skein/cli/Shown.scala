@@ -8,9 +8,10 @@ private[cli] final class Shown(asJson: Boolean):
   /** With `--json`, prints the tables as JSON; otherwise prints `text`.
     *
     * @param text printed without `--json`
+    * @param more further fields of the JSON
     */
-  def tables(sections: Seq[Section], text: => String): Unit =
-    Console.out.println(if asJson then Section.json(sections) else text)
+  def tables(sections: Seq[Section], text: => String, more: (String, ujson.Value)*): Unit =
+    Console.out.println(if asJson then Section.json(sections, more*) else text)
 
   /** Prints a remark; with `--json` to the error output. */
   def say(line: String): Unit = (if asJson then Console.err else Console.out).println(line)

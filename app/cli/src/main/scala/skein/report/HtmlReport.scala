@@ -74,7 +74,7 @@ object HtmlReport:
       cls := "wide",
       tag("table")(
         thead(tr(text.header.zipWithIndex.map((name, column) => th(side(column), name.stripPrefix("<"))))),
-        tbody(text.rows.map(row => tr(row.zipWithIndex.map((cell, column) => td(side(column), cell)))))
+        tbody(text.shown.map(row => tr(row.zipWithIndex.map((cell, column) => td(side(column), cell)))))
       )
     )
 

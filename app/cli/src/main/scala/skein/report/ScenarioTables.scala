@@ -54,20 +54,19 @@ object ScenarioTables:
           )
         )
       )
-      (one, index) <- broken.take(MostListed).zipWithIndex
-    yield
-      val first = index == 0
-      Vector(
-        if first then flight.summary.name else "",
-        if first then flight.summary.flight.link else "",
-        if first then limit.text else "",
-        if first then broken.size.toString else "",
-        one.vehicles.map(flown.scenario.agents(_).name).mkString(", "),
-        one.fromS.fixed(2),
-        one.toS.fixed(2),
-        one.worst.fixed(2),
-        one.worstAtS.fixed(2)
-      )
+      one <- broken.take(MostListed)
+    yield Vector(
+      flight.summary.name,
+      flight.summary.flight.link,
+      limit.text,
+      broken.size.toString,
+      one.vehicles.map(flown.scenario.agents(_).name).mkString(", "),
+      one.fromS.fixed(2),
+      one.toS.fixed(2),
+      one.worst.fixed(2),
+      one.worstAtS.fixed(2)
+    ),
+    grouped = 4
   )
 
   def limits(scenario: Scenario): String =
@@ -111,7 +110,7 @@ object ScenarioTables:
     def two(value: Double) = value.fixed(2)
     Distribution.of(values).fold("")(all =>
       if all.count == 1 then two(all.mean)
-      else s"${two(all.mean)} ± ${two(all.sd)}, ${two(all.least)} … ${two(all.most)}"
+      else s"${two(all.mean)} ± ${two(all.sampleSd)}, ${two(all.least)} … ${two(all.most)}"
     )
 
   /** The text for an event that did not occur in the flight. */

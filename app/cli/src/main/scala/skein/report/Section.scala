@@ -29,12 +29,14 @@ object Section:
   private def textOf(section: Section, table: TextTable): String =
     (Vector(section.title, table.render) ++ Paragraph.lines(section.note, 100)).mkString("\n")
 
-  /** All tables: `{"tables": [{"title", "note", "columns", "rows"}]}`. A row is a list as long as the
-    * columns; a cell is a number if it reads as one, null if it is empty, and else text.
+  /** All tables, in ASCII: `{"tables": [{"title", "note", "columns", "rows"}]}`. A row is a list as long as
+    * the columns; a cell is a number if it reads as one, null if it is empty, and else text.
+    *
+    * @param more further fields
     */
-  def json(sections: Seq[Section]): String =
+  def json(sections: Seq[Section], more: (String, Value)*): String =
     val tables = sections.flatMap(section => section.table.map(jsonOf(section, _)))
-    ujson.write(Obj("tables" -> Arr.from(tables)), indent = 2)
+    ujson.write(Obj("tables" -> Arr.from(tables), more*), indent = 2, escapeUnicode = true)
 
   private def jsonOf(section: Section, table: TextTable): Value = Obj(
     "title"   -> section.title,

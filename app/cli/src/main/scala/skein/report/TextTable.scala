@@ -4,12 +4,20 @@ package skein.report
   *
   * @param header the columns' names; those that begin with `<` are aligned left
   * @param rows each as wide as the header
+  * @param grouped how many leading columns are left out in text where a row repeats all of them
   */
-final case class TextTable(header: Vector[String], rows: Vector[Vector[String]]):
+final case class TextTable(header: Vector[String], rows: Vector[Vector[String]], grouped: Int = 0):
+
+  /** The rows as text shows them: without leading cells that a row repeats. */
+  def shown: Vector[Vector[String]] =
+    rows.headOption.toVector ++ rows.zip(rows.drop(1)).map: (above, row) =>
+      if grouped > 0 && row.take(grouped) == above.take(grouped) then
+        Vector.fill(grouped)("") ++ row.drop(grouped)
+      else row
 
   def render: String =
     val names                               = header.map(_.stripPrefix("<"))
-    val rows                                = this.rows.map(_.map(TextTable.printable))
+    val rows                                = shown.map(_.map(TextTable.printable))
     val widths                              = (names +: rows).transpose.map(_.map(_.length).max)
     def line(cells: Vector[String]): String =
       cells.indices

@@ -31,6 +31,11 @@ class SectionSuite extends munit.FunSuite:
       )
     )
 
+  test("data are in ASCII, whatever the terminal can show"):
+    val text = Section.json(Seq(Section("1 ± 2 °", "…", Some(table))))
+    assert(clue(text).forall(_ < 128))
+    assertEquals(ujson.read(text)("tables")(0)("title").str, "1 ± 2 °")
+
   test("text: a note is below its table, in lines of at most 100 characters"):
     val note  = Vector.fill(60)("words").mkString(" ")
     val lines = Section.text(Seq(

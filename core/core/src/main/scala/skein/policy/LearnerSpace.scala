@@ -49,8 +49,8 @@ trait SharesPolicy extends Policy:
 
   def space: LearnerSpace
 
-  /** The largest turn rate until the next decision, rad/s; the largest turn of one decision, whatever the
-    * time since the last, rad; and the maximum vertical speed, m/s.
+  /** The largest turn per second since the previous decision, rad/s; the largest turn of one decision,
+    * whatever that time, rad; and the maximum vertical speed, m/s. A decision turns the heading immediately.
     */
   def turnRateRadPerS: Double
   def turnRad: Double

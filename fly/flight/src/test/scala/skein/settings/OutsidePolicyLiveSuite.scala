@@ -32,6 +32,15 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
       Seq(Right(0.5 + 0.05), Right(0.5 - 0.1), Right(0.5 + 0.1))
     )
 
+  test(
+    "with a turn rate, an answer is a fraction of it, for both roles; without, an evader turns immediately"
+  ):
+    def decidedBy(who: String) = Using.resource(Peer((_, _) => Some(Peer.number(0.5f)))): peer =>
+      reached(OutsidePolicy.reach(peer.option.replace("pursuer", who))).heading(seen)
+    assertEquals(decidedBy("pursuer@2.5"), 0.5 + 0.125)
+    assertEquals(decidedBy("evader@2.5"), 0.5 + 0.125)
+    assertEquals(decidedBy("evader"), 0.5 + math.Pi / 2)
+
   test("observations are in the frame of the vehicle's heading"):
     val straight = seen.copy(ownHeadingRad = 0).fromOwnHeading.toVector
     assertEquals(straight.take(4), Vector(3.0, 4.0, 1.0, -2.0))
@@ -127,4 +136,12 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
       OutsidePolicy.reach("unix:judge:/nowhere"),
       Left("unix:judge:/nowhere: expected pursuer or evader, got 'judge'")
     )
-    assertEquals(OutsidePolicy.reach("unix:pursuer"), Left("expected unix:ROLE:PATH, got 'unix:pursuer'"))
+    assertEquals(
+      OutsidePolicy.reach("unix:pursuer"),
+      Left("expected unix:ROLE:PATH, or unix:ROLE@RATE:PATH, got 'unix:pursuer'")
+    )
+    for rate <- Seq("51", "0", "fast", "NaN") do
+      assertEquals(
+        OutsidePolicy.reach(s"unix:evader@$rate:/nowhere"),
+        Left(s"unix:evader@$rate:/nowhere: expected a turn rate from 0.001 to 50.0 rad/s, got '$rate'")
+      )

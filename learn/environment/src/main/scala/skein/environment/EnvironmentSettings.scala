@@ -59,10 +59,11 @@ final case class EnvironmentSettings(
     objective: String = ""
 ):
   import EnvironmentSettings.*
+  import OutsidePolicy.{LeastRateRadPerS, MostRateRadPerS}
 
   def space: LearnerSpace = LearnerSpace(climbMps > 0)
 
-  /** The maximum turn of a learner: rad/s until the next decision, and rad in one instant. */
+  /** The maximum turn of a learner: rad/s since its previous decision, and rad in one instant. */
   def mostTurn(role: Role): (Double, Double) =
     if role != Role.Evader then (turnRateRadPerS, 0)
     else (evaderRateRadPerS, if evaderRateRadPerS > 0 then 0 else math.Pi)
@@ -109,7 +110,7 @@ final case class EnvironmentSettings(
       _     <- within("start_within_m", startWithinM._1, 0, MostM)
       _     <- within("start_within_m", startWithinM._2, startWithinM._1, MostM)
       _     <- Moves.mistake(movesInFlight).map("moves_in_flight: " + _).toLeft(())
-      _     <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, MostRateRadPerS)
+      _     <- within("turn_rate_rad_per_s", turnRateRadPerS, LeastRateRadPerS, MostRateRadPerS)
       _     <- within("evader_rate_rad_per_s", evaderRateRadPerS, 0, MostRateRadPerS)
       _     <- within("climb_mps", climbMps, 0, MostClimbMps)
       known <- VehicleChoice.parse(if plant.nonEmpty then plant else otherwise, atM).left.map("plant: " + _)
@@ -145,8 +146,6 @@ object EnvironmentSettings:
   private[environment] val SpareS = 3.0
 
   private val MostM = 1000.0
-
-  private val MostRateRadPerS = 50.0
 
   private[skein] val MostClimbMps = 50.0
 

@@ -1,5 +1,6 @@
 package skein.record
 
+import java.nio.{ByteBuffer, ByteOrder}
 import java.nio.file.{Files, Path}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
@@ -30,6 +31,12 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolder
     assertEquals(Await.result(recorder.close(), 1.second), written)
     assert(!recorder.failure.isCompleted)
     assertEquals(read(file), Recording(Samples.heading, Samples.oneOfEach))
+
+  folder.test("a recording has the file format of DuckDB 1.0, which later clients read, too"): folder =>
+    val file = folder.resolve("flight.duckdb")
+    Await.result(open(file, capacity = 16).close(), 10.seconds): Unit
+    val version = ByteBuffer.wrap(Files.readAllBytes(file)).order(ByteOrder.LITTLE_ENDIAN).getLong(12)
+    assertEquals(version, 64L)
 
   folder.test("many rows in many batches are all in the file, once and in order"): folder =>
     val file     = folder.resolve("flight.duckdb")

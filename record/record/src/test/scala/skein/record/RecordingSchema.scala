@@ -15,7 +15,7 @@ object RecordingSchema:
   private val introduction =
     """# What a recording contains
       |
-      |A recording is one DuckDB file. Open it with any DuckDB client.
+      |A recording is one DuckDB file. Open it with any DuckDB client since 1.0.
       |A flight that is killed loses the rows of its last 100 ms at most; on a busy machine that takes [real-time
       |priority](decisions/0011-real-time-threads.md). A power cut during a flight may damage its file.
       |`./skein export FILE --parquet DIR` turns it into Parquet, `./skein export FILE --mcap FILE` into a file for
