@@ -104,15 +104,14 @@ final class IdentifyCommand(using scenarios: Scenarios)
       flights: Vector[TimeHistory],
       vehicles: Seq[String]
   ): Either[String, Vector[TimeHistory]] =
-    val wanted = if vehicles.isEmpty then flights
-    else flights.filter(flown => vehicles.exists(name => flown.name.endsWith(s", $name")))
-    Either.cond(
-      wanted.nonEmpty,
-      wanted,
-      if flights.isEmpty then "expected recordings with commands to vehicles, got none"
-      else
-        s"--vehicle: expected one of ${flights.map(_.name.split(", ").last).distinct.mkString(", ")}, got ${vehicles.mkString(", ")}"
-    )
+    def flownBy(name: String) = flights.filter(_.name.endsWith(s", $name"))
+    val unknown               = vehicles.filter(flownBy(_).isEmpty)
+    for
+      _ <- Expect.that(flights.nonEmpty)("expected recordings with commands to vehicles, got none")
+      _ <- Expect.that(unknown.isEmpty):
+        s"--vehicle: expected one of ${flights.map(_.name.split(", ").last).distinct.mkString(", ")}, " +
+          s"got ${unknown.mkString(", ")}"
+    yield if vehicles.isEmpty then flights else vehicles.distinct.flatMap(flownBy).toVector
 
   private def fit(
       flights: Vector[TimeHistory],
