@@ -5,7 +5,7 @@ import mainargs.{Flag, Leftover, ParserForClass, arg}
 import skein.forecast.Structure
 import skein.figures.ResponseFigure
 import skein.identify.*
-import skein.measure.{FlownVehicles, RecordedSeeing}
+import skein.measure.{FlownVehicle, FlownVehicles, NoResult, RecordedSeeing}
 import skein.units.OwnFailure
 import skein.record.{Digest, Recording, RecordingReader}
 import skein.report.{Section, TextTable, Typed}
@@ -60,8 +60,11 @@ final class IdentifyCommand(using scenarios: Scenarios)
         s"--horizon: expected 200ms or more, got ${options.horizon}"
       recordings <- read(files)
       _          <- once(files)
-      flights    <- chosen(recordings.flatMap(FlownVehicles.of), options.vehicle)
-      fits       <- fit(flights, use, horizon.toSeconds)
+      vehicles   <- IdentifiedVehicles.chosen(recordings.flatMap(FlownVehicles.of), options.vehicle)(
+        Console.err.println
+      )
+      flights = vehicles.flatMap(_.stretches)
+      fits <- fit(vehicles, use, horizon.toSeconds)
       shown    = Shown(options.json.value)
       sensor   = sensorOf(recordings)
       sections = tables(fits, flights) ++ sensor.map(sensorTable)
@@ -69,10 +72,10 @@ final class IdentifyCommand(using scenarios: Scenarios)
       _        = shown.tables(sections, Section.text(sections))
       from     = ModelFile.Provenance(
         files.zip(recordings).map(described),
-        flights.map(_.name),
+        flights.map(_.name).distinct,
         horizon.toSeconds,
         version(recordings),
-        altitude(flights)
+        IdentifiedVehicles.altitudeM(vehicles)
       )
       paths <- write(
         out,
@@ -82,12 +85,16 @@ final class IdentifyCommand(using scenarios: Scenarios)
         sensor.map(SensorFile.render(_, files.zip(recordings).map(described)))
       )
     yield shown.say(
-      s"\nwritten: ${paths.mkString(", ")}\n${flyBy(use, out.resolve("model.conf"), flights)}" +
+      s"\nwritten: ${paths.mkString(", ")}\n${flyBy(use, out.resolve("model.conf"), vehicles)}" +
         sensor.fold("")(_ => s"\nuse it: ./skein budget --eye ${out.resolve("sensor.conf")}")
     )
 
   private def read(files: Vector[String]): Either[String, Vector[Recording]] =
-    Expect.each(files)(file => RecordingReader.read(Path.of(file)).left.map(_.message))
+    Expect.each(files): file =>
+      for
+        recording <- RecordingReader.read(Path.of(file)).left.map(_.message)
+        _ <- NoResult.of(recording).map(none => s"$file: no result: ${none.what}: ${none.why}").toLeft(())
+      yield recording
 
   /** Refuses recordings given twice: they would make the intervals too narrow. */
   private def once(files: Vector[String]): Either[String, Unit] =
@@ -100,30 +107,22 @@ final class IdentifyCommand(using scenarios: Scenarios)
           s"expected every flight once, got the same one in ${same.get.mkString(" and ")}"
       yield ()
 
-  private def chosen(
-      flights: Vector[TimeHistory],
-      vehicles: Seq[String]
-  ): Either[String, Vector[TimeHistory]] =
-    def flownBy(name: String) = flights.filter(_.name.endsWith(s", $name"))
-    val unknown               = vehicles.filter(flownBy(_).isEmpty)
-    for
-      _ <- Expect.that(flights.nonEmpty)("expected recordings with commands to vehicles, got none")
-      _ <- Expect.that(unknown.isEmpty):
-        s"--vehicle: expected one of ${flights.map(_.name.split(", ").last).distinct.mkString(", ")}, " +
-          s"got ${unknown.mkString(", ")}"
-    yield if vehicles.isEmpty then flights else vehicles.distinct.flatMap(flownBy).toVector
-
   private def fit(
-      flights: Vector[TimeHistory],
+      vehicles: Vector[FlownVehicle],
       use: Structure,
       horizonS: Double
   ): Either[String, Vector[Fit]] =
     val structures = scenarios.structures
+    val flights    = vehicles.flatMap(_.stretches)
+    val notOurs    = IdentifiedVehicles.unlike(vehicles)
     val reflown    =
-      if Structure.ours.contains(use) then flights.map(HorizonErrors.reflown(_)) else Vector.empty
+      if Structure.ours.contains(use) && notOurs.isEmpty then flights.map(HorizonErrors.reflown(_))
+      else Vector.empty
     Expect
       .each(structures.zipWithIndex): (structure, index) =>
-        identified(flights, structure, horizonS) match
+        notOurs.filter(_ => Structure.ours.contains(structure)).toLeft(()).flatMap(_ =>
+          identified(flights, structure, horizonS)
+        ) match
           case Right(found) =>
             val unsettled =
               if found.isConverged then "" else ", not converged: its parameters are where the fit stopped"
@@ -176,21 +175,17 @@ final class IdentifyCommand(using scenarios: Scenarios)
     val byClock = recordings.groupBy(_.flight.clock).toVector.sortBy(_._1)
     byClock.map((clock, flown) => s"${flown.size} on the $clock clock").mkString("recordings: ", ", ", "")
 
-  private def altitude(flights: Vector[TimeHistory]): Option[Double] =
-    val all = flights.map(-_.downM)
-    Option.when(all.max - all.min < 0.5)(all.sum / all.size)
-
   /** A line on how to use the model file: with this program, if only it knows the structure. */
-  private def flyBy(use: Structure, file: Path, flights: Vector[TimeHistory]): String =
+  private def flyBy(use: Structure, file: Path, vehicles: Vector[FlownVehicle]): String =
     val named = Typed.path(file)
     if Structure.ours.contains(use) then
-      s"use it: ./skein fly --loop predictive --predictor $named${elsewhere(flights)}"
+      s"use it: ./skein fly --loop predictive --predictor $named${elsewhere(vehicles)}"
     else s"use it, with this program: fly --loop predictive --predictor $named, search --plant $named"
 
   /** A line on the altitude of flights with this model, if the vehicles did not fly at the duel's altitude.
     */
-  private def elsewhere(flights: Vector[TimeHistory]): String =
-    altitude(flights).filter(_ != PaperDuel.AltitudeM).fold("")(metres =>
+  private def elsewhere(vehicles: Vector[FlownVehicle]): String =
+    IdentifiedVehicles.altitudeM(vehicles).filter(_ != PaperDuel.AltitudeM).fold("")(metres =>
       s" --altitude ${(metres * 10).round / 10.0}"
     )
 
@@ -205,11 +200,11 @@ final class IdentifyCommand(using scenarios: Scenarios)
         found.parameters.find(_.name == name).fold("")(interval)
       ) ++:
         Vector(f"${found.velocityRmsMps}%.4f", f"${found.positionRmsM}%.4f")
-    val seconds = flights.map(flown => flown.samples.last.atS - flown.samples.head.atS).sum
+    val seconds = flights.map(_.spanS).sum
     val first   = fits.head.identification
     Vector(
       Section(
-        f"${flights.size} flights of one vehicle, $seconds%.0f s, ${first.predictions} predicted readings; ± is the 95 %% interval over ${first.blocks} blocks",
+        f"${flights.map(_.name).distinct.size} flights of one vehicle, $seconds%.0f s, ${first.predictions} predicted readings; ± is the 95 %% interval over ${first.blocks} blocks",
         table = Some(TextTable(("<structure" +: names) ++ Vector("rms m/s", "rms m"), parameters))
       )
     ) ++ Option.when(fits.exists(_.againstQuadrotor.nonEmpty))(

@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.file.Path
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
-import scala.concurrent.{Future, Promise}
+import scala.concurrent.Promise
 import skein.flight.{
   FlightAssembler,
   FlightResult,
@@ -88,26 +88,22 @@ private[cli] final class LiveCommand(
       system: ActorSystem
   ): Either[String, Vector[FlightResult]] =
     import system.dispatcher
-    val abandoned = Promise[Either[String, LiveFlights]]()
+    val abandoned = Promise[String]()
     def stop()    =
       val why = "ended from outside before it began"
       requests.stopAll(why)
       // Silent vehicles are not waited for.
-      system.scheduler.scheduleOnce(CalledOffWithin)(
-        abandoned.trySuccess(Left(s"${plans.head.id}: $why")): Unit
-      ): Unit
+      system.scheduler.scheduleOnce(CalledOffWithin)(abandoned.trySuccess(why): Unit): Unit
     Edge.untilInterrupted(() => stop()):
       Edge
-        .await(Future.firstCompletedOf(Seq(
-          LiveFlights.start(
-            assembler,
-            plans,
-            out,
-            heading => shown.fold((_: Recordable) => ())(_.observe(heading)),
-            sinks.open
-          ),
+        .await(LiveFlights.start(
+          assembler,
+          plans,
+          out,
+          heading => shown.fold((_: Recordable) => ())(_.observe(heading)),
+          sinks.open,
           abandoned.future
-        )))
+        ))
         .left
         .map: why =>
           sinks.discard(plans)

@@ -123,6 +123,36 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
       Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
   )
 
+  test("identify fits a convoy's drones without its cars, and none of Skein's structures to cars"):
+    val folder = temporaryFolder()
+    val fly    = "fly --clock virtual --scenario convoy --loop stream --link none --duration 40s --out"
+    assertEquals(Ran.of(Main.run(fly.split(' ').toSeq :+ folder.toString)).status, 0)
+    val file  = folder.resolve("stream-none.duckdb").toString
+    val drone = run(IdentifyCommand(), file)
+    assertEquals(drone._1, 0, drone._3)
+    assert(clue(drone._3).contains("left out: the cars Lead, Rear; --vehicle chooses them"))
+    assert(clue(drone._2).contains("3 flights of one vehicle"))
+    val car = run(IdentifyCommand(), file, "--vehicle", "Lead")
+    assertEquals(car._1, 1)
+    assert(clue(car._3).contains("expected multirotors for a structure of Skein, got the cars Lead"))
+
+  test("identify fits velocities without an altitude to hold, at no altitude, and not with others"):
+    val folder                = temporaryFolder()
+    def fly(scenario: String) =
+      val words = s"fly --clock virtual --scenario $scenario --loop stream --link none --duration 30s --out"
+      assertEquals(Ran.of(Main.run(words.split(' ').toSeq :+ folder.resolve(scenario).toString)).status, 0)
+      folder.resolve(scenario).resolve("stream-none.duckdb").toString
+    val (shadow, slope)   = (fly("shadow"), fly("surround"))
+    val (status, _, said) = run(IdentifyCommand(), shadow)
+    assertEquals(status, 0, said)
+    val model = ModelFile.read(folder.resolve("shadow/model.conf").toString).fold(fail(_), identity)
+    assertEquals(model.altitudeM, None)
+    // The quadrotor that the section compares with flies the recorded commands, so it lags as little.
+    assert(clue(model.reduced.get.lagS) < 1)
+    val mixed = run(IdentifyCommand(), shadow, slope)
+    assertEquals(mixed._1, 1)
+    assert(clue(mixed._3).contains("expected either velocities or velocities that hold an altitude"))
+
   flown.test("identify finds the quadrotor's model in a flight over the VPN, and writes a file for fly"):
     folder =>
       // A program's own structures are all fitted, too, and one that cannot be fitted is named.

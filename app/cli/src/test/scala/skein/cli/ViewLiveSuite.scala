@@ -14,7 +14,7 @@ import skein.report.PaperReport
 import skein.scenario.Scenarios
 import skein.testing.{Lengthy, TemporaryFolders, Waiting}
 import skein.units.Clock
-import skein.view.{RecordedShow, Shows, ViewServer}
+import skein.view.{Feed, FlightControl, LiveShow, RecordedShow, Shows, Token, ViewServer}
 
 /** Flights that are viewed while they run: by Foxglove's own client, and in a browser. */
 class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
@@ -184,6 +184,45 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
       )
       assert(vehicle(3).num > 3)
     replayed(file, recorded)
+
+  test("when the shown flight has ended, the page shows the next one, which can be paused"):
+    val _     = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
+    val shows = Shows()
+    val clock = Clock.system
+    def add(id: String)(control: FlightControl, act: Feed => Unit): Unit =
+      val feed    = Feed()
+      val heading = Samples.heading.copy(flight = Samples.heading.flight.copy(id = id))
+      shows.add(LiveShow(heading, feed, controls = Map(control -> (() => act(feed)))))
+      feed.offer(Samples.reading(1))
+    add("first")(
+      FlightControl.Abort,
+      feed =>
+        feed.offer(Ending(clock.now(), EndingKind.Stopped, None))
+        add("second")(FlightControl.Pause, _.offer(Event(clock.now(), EventKind.Paused, None, "by hand")))
+    )
+    val token  = Token("secret")
+    val server = Edge.await(ViewServer.start(shows, clock, ExecutionContext.global, port = 0, token = token))
+    try
+      def flies(id: String) =
+        step("wait", s"window.skein?.flight?.heading?.id === '$id' && skein.flight.hasBegun")
+      val seen = browse(
+        server.url,
+        token.word,
+        flies("first"),
+        step("click", "#abort"),
+        flies("second"),
+        step(
+          "ask",
+          "listed",
+          "[...document.querySelectorAll('#flights option')].map(one => one.textContent)"
+        ),
+        step("ask", "chosen", "document.getElementById('flights').value"),
+        step("click", "#pause"),
+        step("wait", "skein.flight.paused")
+      )
+      assertEquals(seen("told")("listed"), ujson.Arr("first", "second"))
+      assertEquals(seen("told")("chosen").str, "second")
+    finally Edge.await(server.close()): Unit
 
   /** Checks that the page shows at a time exactly what the recording held by then. */
   private def replayed(file: Path, recorded: Recording): Unit =

@@ -12,7 +12,7 @@ import skein.measure.{
 }
 import skein.figures.ObservationFigure
 import skein.plot.Mark
-import skein.record.{Event, EventKind, Planned, Recording}
+import skein.record.{Event, EventKind, ParameterRow, Planned, Recording}
 import skein.scenario.Scenarios
 import skein.signal.Stamped
 import skein.units.*
@@ -61,6 +61,37 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(truths(flight, longer, truth.copy(policy = Some("pure-pursuit"))), Vector.empty)
     val off = Truth.among(Vector(virtual)).deviation(flight)
     assertEquals(off, flight.headline.map(_ / truth.headline.get - 1))
+
+  test(
+    "flights in other air, by other readings, or with another link between vehicles are rows of their own"
+  ):
+    def having(recording: Recording, parameters: (String, String)*) =
+      recording.copy(heading =
+        recording.heading.copy(parameters = parameters.map((name, value) => ParameterRow(name, value)))
+      )
+    val windy  = "plant" -> "airsim:wind=5"
+    val nearer = SyntheticFlight("paused", "none", seed = 7, seconds = 12)
+    val table  = SpreadTable.of(Report.of(Seq(
+      paused,
+      streams(0),
+      having(nearer, windy),
+      having(streams(1), windy),
+      having(streams(2), "sensors"       -> "position=0.3,velocity=0.1,dropout=5%"),
+      having(streams(0), "decentralised" -> "true", "knows" -> "positions")
+    )).flights)
+    assertEquals(
+      table.rows.map(row => (row.head, row(2), row.last.nonEmpty)),
+      Vector(
+        ("paused", "1", false),
+        ("paused, plant airsim:wind=5", "1", false),
+        ("stream", "1", true),
+        ("stream, plant airsim:wind=5", "1", true),
+        ("stream, sensors 1", "1", false),
+        ("stream, knows positions, decentralised", "1", false)
+      )
+    )
+    val flights = Report.of(Seq(paused, having(nearer, windy), having(streams(1), windy))).flights
+    assertEquals(Truth.among(flights).of(flights.last), Vector(flights(1)))
 
   test("without a paused flight its column is empty, and captures are counted"):
     val stream = row(SpreadTable.of(set.flights.tail), "stream")

@@ -2,6 +2,7 @@ package skein.flight
 
 import java.util.concurrent.atomic.AtomicReference
 import scala.concurrent.{Future, Promise}
+import skein.policy.Seen
 import skein.record.*
 import skein.scenario.{Known, OwnEnd, Scenario}
 import skein.units.*
@@ -10,12 +11,19 @@ import skein.units.*
   * readings that the decision used.
   *
   * @param isPaused whether time stands still during decisions: then ages are zero
+  * @param isDecentralised whether each vehicle has a controller of its own: then the newest reading of each
+  *   vehicle counts, by whichever controller
   */
-private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, recorder: Recorder)
-    extends Recorder:
+private[flight] final class EndCondition(
+    scenario: Scenario,
+    isPaused: Boolean,
+    isDecentralised: Boolean,
+    recorder: Recorder
+) extends Recorder:
   private val end      = OwnEnd.of(scenario)
   private val vehicles = scenario.agents.size
   private val begun    = AtomicReference(Option.empty[Instant])
+  private val newest   = AtomicReference(Vector.empty[(at: Instant, seen: Seen)])
   private val over     = Promise[Unit]()
 
   def isOver: Future[Unit] = over.future
@@ -32,8 +40,20 @@ private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, 
     require(seen.size == vehicles, s"a decision from readings of ${seen.size} of $vehicles vehicles")
     Known(
       decision.decidedAt.since(first),
-      if isPaused then seen.map(_.copy(age = Span.Zero)) else seen
+      if isPaused then seen.map(_.copy(age = Span.Zero))
+      else if isDecentralised then newestWith(seen, decision.decidedAt)
+      else seen
     )
+
+  /** The newest readings of all controllers' decisions so far. */
+  private def newestWith(seen: Vector[Seen], now: Instant): Vector[Seen] =
+    val sampled = seen.map(one => (at = now - one.age, seen = one))
+    newest
+      .updateAndGet(held =>
+        if held.isEmpty then sampled
+        else held.zip(sampled).map((before, next) => if next.at > before.at then next else before)
+      )
+      .map(one => one.seen.copy(age = now.since(one.at).max(Span.Zero)))
 
   def failure: Future[RecordError]                  = recorder.failure
   def close(): Future[Either[RecordError, Written]] = recorder.close()

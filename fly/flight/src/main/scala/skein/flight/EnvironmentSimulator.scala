@@ -4,15 +4,19 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.policy.Action
 import skein.port.{SteppedTime, VehicleError, VehiclePort}
-import skein.record.{MeasurementRow, Recorder}
+import skein.record.{Event, EventKind, MeasurementRow, Recorder}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
+import skein.units.Decimals.fixed
 import skein.vehicle.GoTo
 
 /** An environment of another framework as a simulator: paused, stepped, or run by the clock. It is stepped as
   * late as possible: at each reading or command, by the number of steps that became due since the last one,
   * each under the velocities commanded before it. So it needs no thread of its own, and works in virtual time
   * and live.
+  *
+  * If the steps last longer than the time that they simulate, simulated time falls behind the clock, and an
+  * event says by how much. Time spent in a step is then not made up for.
   *
   * A reading shows the state after the last step. Every step's rewards and ends are recorded, as measurements
   * of each vehicle by the sensor [[EnvironmentSimulator.Sensor]].
@@ -43,6 +47,9 @@ final class EnvironmentSimulator private (
   private var anchored   = Span.Zero
   private var anchoredAt = Option.empty[Instant]
 
+  private var behind  = Span.Zero
+  private var notedAt = Option.empty[Instant]
+
   /** The vehicles, in the order of their names. They accept velocities, positions, and hover. */
   val vehicles: Vector[VehiclePort] = names.indices.toVector.map(Vehicle(_))
 
@@ -71,12 +78,27 @@ final class EnvironmentSimulator private (
     change
     failed.toLeft(())
 
-  /** Steps the environment up to the clock's time. */
-  private def catchUp(): Unit =
-    val from = anchoredAt.getOrElse(clock.now())
-    if !paused then anchoredAt = Some(from)
-    def due = anchored + clock.now().since(from)
-    while !paused && failed.isEmpty && begun.step * (steps + 1) <= due do stepOnce()
+  /** Steps the environment up to the clock's time at this call. */
+  private def catchUp(): Unit = if !paused then
+    val now    = clock.now()
+    val due    = anchored + now.since(anchoredAt.getOrElse(now))
+    val before = steps
+    if anchoredAt.isEmpty then anchoredAt = Some(now)
+    while failed.isEmpty && begun.step * (steps + 1) <= due do stepOnce()
+    val (ended, simulates) = (clock.now(), begun.step * (steps - before))
+    // Else the steps that become due meanwhile would never end.
+    if steps > before && ended.since(now) > simulates then
+      anchored = due
+      anchoredAt = Some(ended)
+      fellBehind(ended.since(now), ended)
+
+  private def fellBehind(by: Span, now: Instant): Unit =
+    behind = behind + by
+    if notedAt.forall(now.since(_) >= NoteEvery) then
+      notedAt = Some(now)
+      val detail =
+        s"the environment's steps take too long: it is ${behind.toSeconds.fixed(2)} s behind the clock"
+      recorder.offer(Event(now, EventKind.ClockDrift, None, detail))
 
   private def stepOnce(): Unit = process.step(velocities) match
     case Left(reason)  => failed = Some(VehicleError.Lost(s"the environment: $reason", mayHaveRun = true))
@@ -149,6 +171,8 @@ final class EnvironmentSimulator private (
 object EnvironmentSimulator:
   /** Maximum vertical speed towards a commanded altitude, m/s. */
   private val MostClimbMps = 3.0
+
+  private val NoteEvery = Span.ofSeconds(5)
 
   private type Answer = Either[VehicleError, Boolean]
 

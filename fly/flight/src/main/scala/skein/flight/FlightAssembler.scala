@@ -6,7 +6,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.Materializer
 import org.apache.pekko.stream.scaladsl.Flow
 import org.apache.pekko.util.ByteString
-import scala.concurrent.{ExecutionContext, Future}
+import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.airsim.{Vehicles, WorldSettings}
 import skein.flow.Hold
 import skein.forward.Asking
@@ -34,7 +34,8 @@ import skein.units.Decimals.brief
   * @param learnsOn threads for policies that learn during the flight; without it, each has its own thread of
   *   low priority
   * @param solvers the links to solvers, for flights that another process decides for
-  * @param calledOff why a flight, by its name, must stop while its vehicles move to their starts
+  * @param calledOff why a flight, by its name, must stop while it waits for its solver, or its vehicles move
+  *   to their starts
   * @param isWatched whether its records are shown, so that images and clouds that are not recorded are still
   *   offered
   * @param isMavlinkByTcp whether `simulator`, if it speaks MAVLink, is reached by TCP instead of datagrams
@@ -155,9 +156,14 @@ final class FlightAssembler(
             opened.closing(workers(settings.planning)): threads =>
               threads.close()
               Future.successful(Done)
-        val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)
-        val flown        = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
-        val hold         = Hold()
+        val endCondition = EndCondition(
+          settings.scenario,
+          plan.loop == LoopKind.Paused,
+          settings.isDecentralised(plan),
+          monitor
+        )
+        val flown = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
+        val hold  = Hold()
 
         val network = settings.between.filter(_ => reached.apart.nonEmpty).map: link =>
           val inScene = Moment(settings.world.scene, Vector.empty)
@@ -265,13 +271,19 @@ final class FlightAssembler(
             val waits = system.scheduler.scheduleOnce(solvers.toldAfter.toDuration):
               val most = solvers.patience.toSeconds.brief
               tell(s"${plan.id}: waits for --solver ${choice.text}, $most s at most: ${client.whyNone}")
-            client
-              .ready(solvers.patience)
+            unlessCalledOff(plan)(client.ready(solvers.patience))
               .andThen(_ => waits.cancel())
               .recoverWith:
                 case no: SolverClient.NoSolver =>
                   Future.failed(CannotFly(s"--solver ${choice.text}: ${no.reason}"))
               .map(_ => Some(client))
+
+  private def unlessCalledOff[A](plan: FlightPlan)(waiting: Future[A]): Future[A] =
+    val ready = Promise[A]().completeWith(waiting)
+    val every = FlightAssembler.LookEvery.toDuration
+    val calls = system.scheduler.scheduleWithFixedDelay(every, every): () =>
+      calledOff(plan.id).foreach(why => ready.tryFailure(CannotFly(why)))
+    ready.future.andThen(_ => calls.cancel())
 
   /** The fleet with policies that may learn during the flight. */
   private def learning(
@@ -281,8 +293,9 @@ final class FlightAssembler(
       monitor: FlightMonitor
   ): Fleet =
     def taught(lessons: Lessons, explore: Double) =
-      chosen.learningIn(plan.fleet(settings), lessons, explore, plan.seed): (vehicle, decision, news) =>
-        RecordedPlan.learned(clock.now(), vehicle, decision, news).foreach(monitor.offer)
+      chosen.learningIn(plan.fleet(settings), lessons, explore, plan.seed, settings.period):
+        (vehicle, decision, news) =>
+          RecordedPlan.learned(clock.now(), vehicle, decision, news).foreach(monitor.offer)
     chosen.learning match
       case None                                  => plan.fleet(settings)
       case Some(Learning.Again(explore, news))   => taught(LessonsAgain(news), explore)
@@ -440,6 +453,8 @@ object FlightAssembler:
 
   /** The events of a solver that are reported to the user immediately. */
   private val told = Set(EventKind.Disconnected, EventKind.Reconnected, EventKind.Refused)
+
+  private val LookEvery = Span.ofMillis(100)
 
   private val anyPort = Address("127.0.0.1", 0)
 

@@ -3,7 +3,7 @@ package skein.flight
 import java.nio.file.{Files, Path}
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.Materializer
-import scala.concurrent.Future
+import scala.concurrent.{Future, Promise}
 import scala.util.Try
 import scala.util.control.NonFatal
 import skein.link.FavouredThread
@@ -55,6 +55,7 @@ object LiveFlights:
     * @param observe called with each flight's heading; its result is called with every record of that flight,
     *   and must not block
     * @param beside receives a flight's rows in addition to its recording, or why it cannot
+    * @param abandoned completes with the reason if flights that have not started yet are not waited for
     * @return Left says why they cannot start; those that had started were stopped again
     */
   def start(
@@ -62,11 +63,13 @@ object LiveFlights:
       plans: Vector[FlightPlan],
       folder: Path,
       observe: RecordingHeader => Recordable => Unit = _ => _ => (),
-      beside: (FlightPlan, RecordingHeader) => Either[String, Vector[RowSink]] = (_, _) => Right(Vector.empty)
+      beside: (FlightPlan, RecordingHeader) => Either[String, Vector[RowSink]] =
+        (_, _) => Right(Vector.empty),
+      abandoned: Future[String] = Future.never
   )(using system: ActorSystem): Future[Either[String, LiveFlights]] =
     import system.dispatcher
     Future
-      .sequence(plans.map(start(assembler, _, folder, observe, beside)))
+      .sequence(plans.map(start(assembler, _, folder, observe, beside, abandoned)))
       .flatMap: started =>
         val flying = started.collect { case Right(assembly) => assembly }
         started.collectFirst { case Left(reason) => reason } match
@@ -84,7 +87,8 @@ object LiveFlights:
       plan: FlightPlan,
       folder: Path,
       observe: RecordingHeader => Recordable => Unit,
-      beside: (FlightPlan, RecordingHeader) => Either[String, Vector[RowSink]]
+      beside: (FlightPlan, RecordingHeader) => Either[String, Vector[RowSink]],
+      abandoned: Future[String]
   )(using system: ActorSystem): Future[Either[String, FlightAssembly]] =
     import system.dispatcher
     val heading = assembler.heading(plan, clockKind = "real")
@@ -99,10 +103,16 @@ object LiveFlights:
         case Left(reason)    => Future.successful(Left(reason))
         case Right(recorder) =>
           // It lives as long as the flight, whose graph can be requested until then.
-          val own = Materializer(system)
-          assembler
+          val own      = Materializer(system)
+          val starting = assembler
             .start(plan, ObservedRecorder(recorder, observe(heading), assembler.keeps), Some(own))
             .recover { case NonFatal(error) => Left(s"it could not be started: $error") }
+          val begun = Promise[Either[String, FlightAssembly]]()
+          abandoned.foreach(why => begun.trySuccess(Left(why)))
+          starting.foreach: answer =>
+            // After it was abandoned, it must not fly.
+            if !begun.trySuccess(answer) then answer.foreach(_.flight.stop())
+          begun.future
             .flatMap:
               case Left(reason) =>
                 own.shutdown()

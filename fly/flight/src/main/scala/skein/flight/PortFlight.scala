@@ -80,7 +80,7 @@ final case class PortFlight(
       system: ActorSystem
   ): PortFlight.UnderWay =
     import system.dispatcher
-    val endCondition = EndCondition(scenario, loop == LoopKind.Paused, recorder)
+    val endCondition = EndCondition(scenario, loop == LoopKind.Paused, isDecentralised = false, recorder)
     val planners     = workers
     val team         = Team(scenario.fleet, vehicles, clock, endCondition, loopSettings, planners)
     val flight       = Flight.start(loop, team, time, duration, clock, endCondition)

@@ -1,6 +1,5 @@
 package skein.loop
 
-import java.util.concurrent.atomic.AtomicReference
 import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.QueueOfferResult
 import org.apache.pekko.stream.scaladsl.Source
@@ -16,25 +15,29 @@ private final class Inbox(
     onDropped: Reading => Unit
 ):
   private val first  = Promise[Reading]()
-  private val newest = AtomicReference(Option.empty[Reading])
-  private val reader = AtomicReference((_: Reading) => ())
+  private var newest = Option.empty[Reading]
+  private var reader = (_: Reading) => ()
 
   def put(message: Reading): Unit =
-    newest.updateAndGet: held =>
-      if held.exists(one => !isNewer(message.state, one.state)) then held else Some(message)
-    first.trySuccess(message)
-    reader.get()(message)
+    synchronized:
+      if newest.forall(held => isNewer(message.state, held.state)) then newest = Some(message)
+      reader(message)
+    first.trySuccess(message): Unit
 
   /** The newest message so far; if there is none yet, the first one. */
   def read(): Future[Reading] =
-    newest.get.fold(first.future)(Future.successful)
+    synchronized(newest).fold(first.future)(Future.successful)
 
-  /** The messages from now on, in the order of their arrival. One graph may run it. */
+  /** The newest message so far, and the messages from now on, in the order of their arrival. One graph may
+    * run it.
+    */
   def messages: Source[Reading, NotUsed] =
     Source
       .queue[Reading](Inbox.Waiting)
       .mapMaterializedValue: queue =>
-        reader.set(message => if queue.offer(message) == QueueOfferResult.Dropped then onDropped(message))
+        synchronized:
+          reader = message => if queue.offer(message) == QueueOfferResult.Dropped then onDropped(message)
+          newest.foreach(reader)
         NotUsed
 
 private object Inbox:

@@ -161,17 +161,23 @@ private final class PausedFlight(
       case Left(error)                           =>
         team.log.note(EventKind.TimedOut, None, s"a step: ${error.message}")
         for
-          at   <- standing(None)
+          at   <- standing(None, since)
           done <- if at.since(from) >= team.settings.period / 2 then Future.unit else advance(from, since)
         yield done
 
-  /** The time at which the simulator stands still, established by two successive readings. */
-  private def standing(before: Option[Instant]): Future[Instant] =
+  /** The time at which the simulator stands still, established by two successive readings. Fails if its time
+    * runs on.
+    */
+  private def standing(before: Option[Instant], since: Instant): Future[Instant] =
     for
-      _  <- after(PausedFlight.LookEvery)(Future.unit)
-      at <-
-        patiently(team.readAll(isRunning = false)).map(readings => PausedLoop.newest(readings.map(_.state)))
-      still <- if before.contains(at) then Future.successful(at) else standing(Some(at))
+      _        <- after(PausedFlight.LookEvery)(Future.unit)
+      readings <- patiently(team.readAll(isRunning = false), since)
+      at = PausedLoop.newest(readings.map(_.state))
+      still <-
+        if before.contains(at) then Future.successful(at)
+        else if before.isDefined && isOver(since) then
+          Future.failed(LoopFailed("a step's answer was lost, and the simulator does not stand still"))
+        else standing(Some(at), since)
     yield still
 
   /** Repeats a call until it is answered, or a retry is useless. */
@@ -188,7 +194,9 @@ private final class PausedFlight(
   private def isInVain(error: VehicleError, since: Instant): Boolean = error match
     case VehicleError.Refused(_) | VehicleError.Malformed(_) | VehicleError.Unsupported(_) |
         VehicleError.Cancelled(_) => true
-    case _ => stopped() || clock.now().since(since) > PausedLoop.Patience
+    case _ => isOver(since)
+
+  private def isOver(since: Instant) = stopped() || clock.now().since(since) > PausedLoop.Patience
 
   private def failed(error: VehicleError) = Future.failed(LoopFailed(error.message))
 

@@ -157,6 +157,11 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
   private def name(vehicle: Int): String = rows.name(vehicle)
 
 object TeamLog:
+  /** The sequence in the detail of an event by [[TeamLog.unread]]. */
+  private[skein] def unreadNumber(detail: String): Option[Long] = detail match
+    case s"reading $sequence: $_" => sequence.toLongOption
+    case _                        => None
+
   private def kindOf(error: VehicleError): EventKind = error match
     case VehicleError.TimedOut(_)                              => EventKind.TimedOut
     case VehicleError.Lost(_, _) | VehicleError.Unreachable(_) => EventKind.Disconnected

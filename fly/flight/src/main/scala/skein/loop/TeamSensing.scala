@@ -43,7 +43,6 @@ private final class TeamSensing(
 
   for by <- messages do
     by.onReceived: message =>
-      align(message, isRunning = true)
       log.read(message)
       inboxes(message.vehicle).put(message)
 

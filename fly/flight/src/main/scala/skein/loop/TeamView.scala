@@ -28,8 +28,8 @@ final case class SentCommand(
   * @param knows what policies may see of the other vehicles
   * @param strangers predicts each vehicle from its readings only; present if the loop predicts and commands
   *   of others are not known
-  * @param byMessages the vehicles that are known by messages: how long these took says nothing of when a
-  *   command acts
+  * @param byMessages the vehicles that are known by messages: how long these took says nothing of the clocks,
+  *   nor of when a command acts
   */
 final case class TeamView(
     readings: Vector[Option[Reading]],
@@ -45,7 +45,7 @@ final case class TeamView(
   def withReading(reading: Reading): TeamView =
     copy(
       readings = readings.updated(reading.vehicle, Some(reading)),
-      alignment = Some(aligned(reading))
+      alignment = aligned(reading)
     ).withEvent(ForecastEvent.Seen(reading.vehicle, reading.state))
 
   /** The view with this reading, unless it holds a newer one. */
@@ -98,10 +98,13 @@ final case class TeamView(
 
   /** Whether a reading is newer than the one held: a late answer never overrides a newer one. */
   def isNews(reading: Reading): Boolean =
-    readings(reading.vehicle).forall(held => aligned(reading).isNewer(reading.state, held.state))
+    val clocks = aligned(reading).getOrElse(ClockAlignment.of(reading.state))
+    readings(reading.vehicle).forall(held => clocks.isNewer(reading.state, held.state))
 
-  private def aligned(reading: Reading): ClockAlignment =
-    alignment.fold(ClockAlignment.of(reading.state))(_.updated(reading.state))
+  private def aligned(reading: Reading): Option[ClockAlignment] =
+    // A message's delays also contain the way between the vehicles.
+    if byMessages(reading.vehicle) then alignment
+    else Some(alignment.fold(ClockAlignment.of(reading.state))(_.updated(reading.state)))
 
   /** Whether every vehicle was read at least once; before that there are no decisions. */
   def isComplete: Boolean = readings.forall(_.isDefined)

@@ -30,6 +30,7 @@ import skein.units.Decimals.fixed
   * @param isInPacket whether its commands carried plans, to a buffer on the vehicle's side of the link
   * @param predictor what predicted its vehicles, as recorded; absent if its loop predicts nothing
   * @param movesInFlight maximum number of one vehicle's unanswered moves; absent if nothing limited them
+  * @param options recorded settings of its loop by name, without usual ones ([[FlightOptions]])
   * @param apart options in which it differs from flights of its name that are shown with it ([[FlightSet]])
   */
 final case class FlightSummary(
@@ -57,6 +58,7 @@ final case class FlightSummary(
     isInPacket: Boolean,
     predictor: Option[String],
     movesInFlight: Option[Int],
+    options: Vector[(String, String)],
     apart: String = ""
 ):
 
@@ -107,7 +109,7 @@ final case class FlightSummary(
     */
   def published: Option[Published.Flight] =
     val isAlike = scenario.exists(_.isPapersGame) && flight.period == Published.Period &&
-      flight.duration == Published.Duration && policy.isEmpty && solver.isEmpty
+      flight.duration == Published.Duration && policy.isEmpty && solver.isEmpty && options.isEmpty
     if isAlike && isComparable then
       flight.loopKind.flatMap(Published.flight(_, flight.link))
     else None
@@ -170,7 +172,8 @@ object FlightSummary:
       Seq("predictor", "model").flatMap(recording.heading.parameter).headOption
         .filter(_ => recording.flight.loopKind.forall(Predicting)),
       recording.heading.parameter("movesInFlight").flatMap(_.toIntOption)
-        .filter(_ => !recording.flight.isPaused)
+        .filter(_ => !recording.flight.isPaused),
+      FlightOptions.of(recording)
     )
 
   private val Predicting = Set(LoopKind.Predictive, LoopKind.Plan)

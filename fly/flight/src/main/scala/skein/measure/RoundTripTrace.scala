@@ -1,7 +1,8 @@
 package skein.measure
 
-import skein.loop.Reading
-import skein.record.Recording
+import skein.airsim.VehicleErrors
+import skein.loop.{Reading, TeamLog}
+import skein.record.{EventKind, EventSubject, Recording}
 import skein.units.Expect
 
 /** Requests over a link, in the order of sending.
@@ -18,20 +19,31 @@ object RoundTripTrace:
   private val MostMs = 3_600_000.0
 
   /** The readings of a recording, by controller and vehicle. A reading that was not answered in time is
-    * missing, and counts as lost.
+    * missing, and counts as lost. One that was refused, or answered without data of the sensors, is left out:
+    * the link carried it.
     */
   def of(recording: Recording): Vector[RoundTripTrace] =
     val controllers = Reading.controllers(recording.heading)
+    val without     = recording.events
+      .filter: event =>
+        event.about.contains(EventSubject.Reading) &&
+          (event.kind == EventKind.Refused || event.detail.endsWith(VehicleErrors.noReading.message))
+      .flatMap(event => event.vehicle.zip(TeamLog.unreadNumber(event.detail)))
+      .toSet
     Reading.asked(recording).groupBy(read => (read.vehicle, read.sequence % controllers)).values.toVector.map:
       readings =>
-        val known       = readings.map(reading => reading.sequence -> reading.state).toMap
-        val numbers     = known.keys.min to known.keys.max by controllers
-        val trips       = numbers.map(known.get).toVector
-        val (from, til) = (known(numbers.head).sentAt, known(numbers.last).sentAt)
-        val everyS      = til.since(from).toSeconds / (trips.size - 1).max(1)
+        val known   = readings.map(reading => reading.sequence -> reading.state).toMap
+        val first   = known.keys.min
+        val last    = known.keys.max
+        val from    = known(first).sentAt.toSeconds
+        val everyS  = (known(last).sentAt.toSeconds - from) / (last - first).max(1)
+        val numbers =
+          (first to last by controllers).filterNot(number =>
+            without((readings.head.vehicle, number))
+          ).toVector
         RoundTripTrace(
-          trips.zipWithIndex.map((state, i) => state.fold(from.toSeconds + i * everyS)(_.sentAt.toSeconds)),
-          trips.map(_.map(state => state.receivedAt.since(state.sentAt).toMillis))
+          numbers.map(number => known.get(number).fold(from + (number - first) * everyS)(_.sentAt.toSeconds)),
+          numbers.map(known.get(_).map(state => state.receivedAt.since(state.sentAt).toMillis))
         )
 
   /** Reads the output of `ping`, or lines `time_s,rtt_ms`; a request without an answer has nothing after the

@@ -77,4 +77,14 @@ object Twin:
 
   private def key(one: FlightSummary) =
     import one.flight.{duration, link, period, scenario}
-    (one.flownAs, link, period, duration, scenario, one.scenario, one.predictor, one.movesInFlight)
+    (
+      one.flownAs,
+      link,
+      period,
+      duration,
+      scenario,
+      one.scenario,
+      one.predictor,
+      one.movesInFlight,
+      one.options
+    )

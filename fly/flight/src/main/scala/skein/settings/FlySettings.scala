@@ -181,7 +181,7 @@ final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[L
     *
     * @param note called with each update, the vehicle and the number of its next decision
     */
-  def learningIn(fleet: Fleet, lessons: Lessons, explore: Double, seed: Long)(
+  def learningIn(fleet: Fleet, lessons: Lessons, explore: Double, seed: Long, period: Span)(
       note: (String, Long, LearnerUpdate) => Unit
   ): Fleet =
     def version(parameters: Vector[Double]) = file.family.policy(parameters).asInstanceOf[LearnedPolicy]
@@ -189,7 +189,15 @@ final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[L
       if agent.role != file.role then agent
       else
         agent.copy(policy =
-          LearningPolicy(version(file.parameters), version, explore, seed, lessons, note(agent.name, _, _))
+          LearningPolicy(
+            version(file.parameters),
+            version,
+            explore,
+            seed,
+            lessons,
+            period,
+            note(agent.name, _, _)
+          )
         ))
 
 /** One flight of an experiment.

@@ -42,7 +42,7 @@ object ModelFile:
 
   /** The data of a fit.
     *
-    * @param altitudeM altitude of all flights, if they share one
+    * @param altitudeM altitude that all commands held, if it was one
     * @param recordings files, each with its flight
     */
   final case class Provenance(
@@ -78,7 +78,7 @@ object ModelFile:
        |
        |  version = ${quoted(from.version)}
        |  horizon = ${number(from.horizonS)} s
-       |${from.altitudeM.fold("  # The flights had several altitudes.")(metres =>
+       |${from.altitudeM.fold("  # The commands did not hold one altitude.")(metres =>
         s"  altitude-m = ${number(metres)}"
       )}
        |${list("recordings", from.recordings)}

@@ -20,7 +20,7 @@ final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
     val flown = plan.fleet(settings)
     plan.policy match
       case Some(chosen @ ChosenPolicy(_, _, Some(Learning.Again(explore, news)))) =>
-        chosen.learningIn(flown, LessonsAgain(news), explore, plan.seed)((_, _, _) => ())
+        chosen.learningIn(flown, LessonsAgain(news), explore, plan.seed, settings.period)((_, _, _) => ())
       case _ => flown
 
 object RecordedPlan:

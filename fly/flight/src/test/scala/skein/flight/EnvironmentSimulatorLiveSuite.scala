@@ -5,13 +5,14 @@ import java.net.{StandardProtocolFamily, UnixDomainSocketAddress}
 import java.nio.channels.{Channels, ServerSocketChannel, SocketChannel}
 import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.Files
+import java.util.concurrent.atomic.AtomicLong
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import skein.loop.{LoopKind, LoopSettings, FlightOutcome}
 import skein.policy.Action
 import skein.port.VehicleError
-import skein.record.{ClockKind, MemoryRecorder, Recording}
+import skein.record.{ClockKind, EventKind, MemoryRecorder, Recording}
 import skein.scenario.Surround
 import skein.signal.LatencyProfile
 import skein.testing.Unhurried
@@ -193,6 +194,37 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite, Unhurried:
           yield Vector(first, ran, stood, two, again)
         .value
     assertEquals(recorded, Vector(0L, 3L, 3L, 5L, 8L).map(step => (step, step)))
+
+  test("an environment slower than the clock falls behind, says so now and then, and still answers"):
+    // Every step takes 1.2 times as long as it simulates. More than 500 steps would be an endless call.
+    val now                                      = AtomicLong()
+    val world                                    = Points()
+    var steps                                    = 0
+    def slow(asked: ujson.Value): Option[String] =
+      steps += 1
+      now.addAndGet(120_000_000L)
+      if steps > 500 then None else points(world)(asked)
+    val (reads, events) = served(slow): path =>
+      VirtualTime
+        .run(seed = 1): system =>
+          given ActorSystem = system
+          import system.dispatcher
+          val clock    = Clock.ofNanos(() => now.get)
+          val recorder = recorderOf(clock)
+          val vehicle  = started(path, recorder, clock).fold(fail(_), identity).vehicles.head
+          val reads    = (0 until 100).foldLeft(Future.successful(Vector.empty[Long])): (before, _) =>
+            for
+              reads <- before
+              read  <- vehicle.read()
+              _ = now.addAndGet(100_000_000L)
+            yield reads :+ read.fold(error => fail(error.message), _.validAt.toNanos / 100_000_000)
+          reads.map(reads => (reads, recorder.recording.events))
+        .value
+    assertEquals(reads, (0L until 100L).toVector)
+    assertEquals(events.map(_.kind).distinct, Vector(EventKind.ClockDrift))
+    // 99 steps, each with 0.22 s of the clock's time; an event every 5 s of it, at most.
+    assertEquals(events.size, 5)
+    assert(events.last.detail.endsWith("it is 11.16 s behind the clock"), events.last.detail)
 
   test("a request that is longer than a socket's buffer arrives whole"):
     val many  = Vector.tabulate(20_000)(number => s"Vehicle$number")

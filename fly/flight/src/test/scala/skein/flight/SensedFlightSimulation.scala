@@ -1,7 +1,7 @@
 package skein.flight
 
 import skein.loop.{FlightOutcome, LoopKind}
-import skein.measure.RecordedTracks
+import skein.measure.{RecordedTracks, RoundTripTrace}
 import skein.record.{EventKind, EventSubject, Recording}
 import skein.settings.*
 import skein.signal.LatencyProfile
@@ -52,6 +52,11 @@ class SensedFlightSimulation extends munit.FunSuite, Unhurried:
     assertEqualsDouble(missing.toDouble / (missing + recording.readings.size), 0.05, 0.025)
     assertEquals(recording.heading.parameter("sensors"), Some("position=0.3,velocity=0.05,dropout=5%"))
     assertEquals(recording.truths.map(_.vehicle).toSet, recording.heading.vehicles.map(_.name).toSet)
+
+  test("a reading without data of the sensors is no loss of the link"):
+    val traces = RoundTripTrace.of(flown("dropout=20%", seconds = 8).recorder.recording)
+    assert(traces.forall(_.size > 30), traces.map(_.size))
+    assertEquals(traces.map(_.lost.count(identity)), Vector(0, 0))
 
   test("equal seeds give equal flights, and the errors matter"):
     def digest(sensors: String) = flown(sensors, seconds = 4).recorder.digest

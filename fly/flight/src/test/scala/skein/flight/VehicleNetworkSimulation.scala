@@ -33,6 +33,9 @@ class VehicleNetworkSimulation extends munit.FunSuite, TemporaryFolders, Optimis
     between = Some(VehicleLink.parse(between).fold(fail(_), identity))
   )
 
+  private def steady(link: String) =
+    LatencyProfile.parse(link, Left(_)).fold(wrong => fail(wrong.message), identity)
+
   private def fly(settings: FlySettings, seed: Long = 1): MemoryRecorder =
     val flown = VirtualFlights.fly(settings, settings.plans.head.copy(seed = seed)).fold(fail(_), identity)
     assertEquals(flown.landed.outcome, FlightOutcome.Completed)
@@ -80,6 +83,13 @@ class VehicleNetworkSimulation extends munit.FunSuite, TemporaryFolders, Optimis
         made.decidedAt.since(made.opponent.state.receivedAt)
       )
     assertEquals(lost(recording), 0L)
+
+  test("slow messages do not change the ages of what a controller reads itself"):
+    val slow = settings(LoopKind.Stream, "constant:400ms", steady("constant:200ms"), Surround())
+    for made <- fly(slow).recording.decisions; age <- made.trueAge do
+      // The simulator's clock is the controller's here.
+      assertEqualsDouble(age.own.toMillis, made.decidedAt.since(made.own.state.validAt).toMillis, 1)
+      assertEqualsDouble(age.opponent.toMillis, made.decidedAt.since(made.opponent.state.validAt).toMillis, 1)
 
   for loop <- Seq(LoopKind.Stream, LoopKind.Predictive) do
     test(s"${loop.label}: without delay and loss, messages are as good as readings of one's own"):

@@ -41,13 +41,15 @@ class PausedLoopSuite extends munit.FunSuite:
   /** A simulator whose steps in `failing` fail, and which resumes only after several attempts.
     *
     * @param isMade whether a failing step is made, and only its answer is lost
+    * @param runsAt the failing step at which another client lets the simulator run
     */
   private final class FragileStepper(
       stepper: SteppedTime,
       failing: Range,
       failedResumes: Int,
       stepsBy: Int => Option[Span],
-      isMade: Boolean
+      isMade: Boolean,
+      runsAt: Option[Int]
   ) extends SteppedTime:
     private var steps, resumes = 0
     var pauses                 = 0
@@ -68,7 +70,8 @@ class PausedLoopSuite extends munit.FunSuite:
     def continueFor(span: Span): Future[Either[VehicleError, Unit]] =
       steps += 1
       def made() = stepper.continueFor(stepsBy(steps).getOrElse(span))
-      if !failing.contains(steps) then made()
+      if runsAt.contains(steps) then stepper.resume().map(_ => lost)(using ExecutionContext.parasitic)
+      else if !failing.contains(steps) then made()
       else if isMade then made().map(_ => lost)(using ExecutionContext.parasitic)
       else Future.successful(lost)
 
@@ -91,7 +94,9 @@ class PausedLoopSuite extends munit.FunSuite:
       failedHovers: Int = 0,
       failedResumes: Int = 0,
       stepsBy: Int => Option[Span] = _ => None,
-      isMade: Boolean = false
+      isMade: Boolean = false,
+      runsAt: Option[Int] = None,
+      stopsAfter: Option[Span] = None
   ): FlightResult = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem      = system
@@ -99,13 +104,13 @@ class PausedLoopSuite extends munit.FunSuite:
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
       val scenario           = PaperDuel().fleet
       val world              = FarQuadrotors(scenario, LatencyProfile.none, 1, clock)
-      val stepper            = FragileStepper(world, failingSteps, failedResumes, stepsBy, isMade)
+      val stepper            = FragileStepper(world, failingSteps, failedResumes, stepsBy, isMade, runsAt)
       val ports              = world.ports.map(Fragile(_, () => stepper.paused, failingReads, failedHovers))
       val recorder           = MemoryRecorder(Samples.heading)
       val team               = Team(scenario, ports, clock, recorder, LoopSettings())
-      Flight
-        .start(LoopKind.Paused, team, Some(stepper), Span.ofSeconds(1), clock, recorder)
-        .outcome
+      val flight = Flight.start(LoopKind.Paused, team, Some(stepper), Span.ofSeconds(1), clock, recorder)
+      for span <- stopsAfter do system.scheduler.scheduleOnce(span.toDuration)(flight.stop())
+      flight.outcome
         .map: outcome =>
           val recording = recorder.recording
           FlightResult(
@@ -182,6 +187,14 @@ class PausedLoopSuite extends munit.FunSuite:
         case FlightOutcome.Failed(reason) => assert(reason.contains(why), reason)
         case other                        => fail(s"expected a failure, got $other")
       isReleased(landed)
+
+  test("a flight ends if the simulator runs while it waits for it to stand still, and when it is stopped"):
+    fly(runsAt = Some(5)).outcome match
+      case FlightOutcome.Failed(reason) => assert(reason.contains("does not stand still"), reason)
+      case other                        => fail(s"expected a failure, got $other")
+    val stopped = fly(runsAt = Some(5), stopsAfter = Some(Span.ofSeconds(2)))
+    assertEquals(stopped.outcome, FlightOutcome.Stopped)
+    isReleased(stopped)
 
   private val forGood = 5 until 1_000_000
 

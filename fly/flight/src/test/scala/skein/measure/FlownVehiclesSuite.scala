@@ -1,6 +1,6 @@
 package skein.measure
 
-import skein.identify.ArrivedCommand
+import skein.policy.Action
 import skein.record.*
 import skein.record.CommandOutcome.*
 import skein.signal.{Kinematics, Stamped}
@@ -60,20 +60,21 @@ class FlownVehiclesSuite extends munit.FunSuite:
     Acknowledgement("Red", number, start + ms(atMs), outcome)
 
   private def flown(loop: String, records: Record*) =
-    FlownVehicles.of(Recording(heading(loop), readings("Red") ++ readings("Blue") ++ records))
+    FlownVehicles
+      .of(Recording(heading(loop), readings("Red") ++ readings("Blue") ++ records))
+      .flatMap(_.stretches)
 
   private def arrivals(records: Record*): Seq[(Double, Double)] =
-    flown("stream", records*).flatMap(_.arrivals).map { case ArrivedCommand(at, x, y) =>
-      assertEquals(y, -x)
-      (math.round(at * 1e6) / 1e3, x)
-    }
+    flown("stream", records*).flatMap(_.arrivals).map: command =>
+      assertEquals(command.vy, -command.vx)
+      (math.round(command.atS * 1e6) / 1e3, command.vx)
 
   test(
     "a commanded vehicle's history ends when its last command arrives, and other vehicles are left out"
   ):
     val all = flown("stream", command(1, 50), command(2, 450))
     assertEquals(all.map(_.name), Vector("f, Red"))
-    assertEquals(all.head.downM, -22.0)
+    assertEquals(all.head.downM, -20.0)
     assertEquals(all.head.arrivals.map(_.atS), Vector(0.05, 0.45))
     assertEquals(all.head.samples.map(sample => math.round(sample.atS * 10).toInt), Vector(0, 1, 2, 3, 4))
     val sample = all.head.samples(3)
@@ -127,3 +128,46 @@ class FlownVehiclesSuite extends munit.FunSuite:
     val all   = flown("paused", decided, other, command(1, 900, decision = Some(7)), command(2, 950))
     assertEquals(all.map(_.arrivals.map(_.atS)), Vector(Vector(0.5)))
     assertEquals(all.head.samples.size, 6)
+
+  test("a pause, and a command that is no velocity, end a stretch; the next one begins at its first command"):
+    def stretches(records: Record*) = flown("stream", records*).map: stretch =>
+      (stretch.arrivals.map(_.vx), stretch.samples.map(sample => math.round(sample.atS * 10).toInt))
+    val commands = Seq(command(1, 50), command(2, 350), command(4, 650), command(5, 950))
+    val split    = Vector((Vector(1.0, 2.0), Vector(0, 1, 2, 3)), (Vector(4.0, 5.0), Vector(7, 8, 9)))
+    def event(kind: EventKind, atMs: Double) = Event(start + ms(atMs), kind, None, "by the test")
+    assertEquals(
+      stretches(
+        (commands :+ event(EventKind.Paused, 400) :+ command(3, 450) :+ event(EventKind.Continued, 500))*
+      ),
+      split
+    )
+    def decided(action: Action) =
+      Samples.decision(7).copy(vehicle = "Red", decidedAt = start + ms(430), action = Some(action))
+    def with3(action: Action) =
+      stretches((commands :+ command(3, 450, decision = Some(7)) :+ decided(action)).sortBy {
+        case sent: CommandRow => sent.sequence
+        case _                => 0L
+      }*)
+    assertEquals(with3(Action.Hover), split)
+    assertEquals(with3(Action.Velocity(Vector3(3, -3, 1))).map(_._1), Vector(Vector(1.0, 2.0, 3.0, 4.0, 5.0)))
+
+  test("relayed readings do not change when commands arrive"):
+    val relayed = readings("Red").map(read =>
+      // Blue's controller, the second of two, received them 400 ms later.
+      read.copy(
+        sequence = 2 * read.sequence + 1,
+        state = read.state.copy(receivedAt = read.state.receivedAt + ms(400))
+      )
+    )
+    val own     = readings("Red").map(read => read.copy(sequence = 2 * read.sequence))
+    val between = ParameterRow("between", "constant:800ms")
+    val told    = heading("stream")
+    val flown   = FlownVehicles.of(Recording(
+      told.copy(parameters = Seq(between, ParameterRow("decentralised", "true"))),
+      own ++ relayed ++ Seq(command(1, 50), command(2, 850), ended(1, 910, Superseded))
+    ))
+    // 60 ms instead of 40: half of it on either way.
+    assertEquals(
+      flown.flatMap(_.stretches).flatMap(_.arrivals).map(one => math.round(one.atS * 1e3)),
+      Vector(50L, 860L)
+    )

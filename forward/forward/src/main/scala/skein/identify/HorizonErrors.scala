@@ -1,5 +1,6 @@
 package skein.identify
 
+import skein.policy.ActionGuidance
 import skein.units.Vector3
 import skein.vehicle.*
 
@@ -72,7 +73,7 @@ object HorizonErrors:
           samples += Sample(atS, state.x, state.y, state.vx, state.vy)
           nextSightS += SampleEveryS
         while next < flown.arrivals.size && flown.arrivals(next).atS <= atS do
-          setpoint = Setpoint.velocityZ(flown.arrivals(next).vx, flown.arrivals(next).vy, flown.downM)
+          setpoint = ActionGuidance.of(flown.arrivals(next).action).setpoint(state.kinematics)
           next += 1
         quadrotor.step(state, setpoint, Environment.Calm)
       flown.copy(samples = samples.result())

@@ -2,7 +2,7 @@ package skein.identify
 
 import skein.forecast.Structure
 import skein.signal.StudentQuantile
-import skein.units.Decimals.fixed
+import skein.units.Decimals.{brief, fixed}
 import skein.vehicle.{ObservedPlant, PlantFlight}
 
 /** A fitted parameter with its 95 % confidence interval from `least` to `most`.
@@ -57,16 +57,15 @@ object Identification:
       yield Window(flown, from, horizonS, (number, (flown.samples(from).atS / BlockS).floor.toLong))
     val blocks = windows.map(_.block).distinct
     if blocks.sizeIs < 2 * structure.space.dimension then
+      val usableS = flights.map(flown => (flown.spanS - horizonS).max(0)).sum
       Left(
         s"expected at least ${(2 * structure.space.dimension * BlockS).fixed(0)} s of flight to identify ${structure.label}, " +
-          s"got ${flights.map(spanS).sum.fixed(0)} s"
+          s"without the last ${horizonS.brief} s of each stretch, from which no whole horizon can be predicted; " +
+          s"got ${usableS.fixed(0)} s"
       )
     else if !flights.exists(_.arrivals.distinctBy(command => (command.vx, command.vy)).sizeIs > 1) then
       Left("expected flights with changing commands, got none")
     else fit(flights, windows, blocks.size, structure)
-
-  private def spanS(flown: TimeHistory): Double =
-    if flown.samples.isEmpty then 0 else flown.samples.last.atS - flown.samples.head.atS
 
   /** A stretch of flight within which samples are predicted.
     *

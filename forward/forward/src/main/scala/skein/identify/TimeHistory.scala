@@ -1,18 +1,33 @@
 package skein.identify
 
+import skein.policy.Action
 import skein.vehicle.{ObservedPlant, PlaneReading, PlantFlight}
 
 /** Horizontal position, m, and velocity, m/s, of a vehicle at a time, s. */
 final case class Sample(atS: Double, x: Double, y: Double, vx: Double, vy: Double):
   def reading: PlaneReading = PlaneReading(x, y, vx, vy)
 
-/** A commanded horizontal velocity, m/s, and the time of its arrival at the vehicle, s. */
-final case class ArrivedCommand(atS: Double, vx: Double, vy: Double)
-
-/** One vehicle's flight: the commands that arrived, and samples of its motion. Both are on one clock and
-  * ordered by time.
+/** A commanded velocity, and the time of its arrival at the vehicle, s.
   *
-  * @param downM the altitude that all commands hold, NED
+  * @param action a velocity, with an altitude to hold or without
+  */
+final case class ArrivedCommand(atS: Double, action: Action):
+  /** The velocity north and east, m/s, whatever it is downwards. */
+  val (vx, vy): (Double, Double) = action.byVelocity match
+    case Action.Velocity(velocity, _)         => (velocity.x, velocity.y)
+    case Action.VelocityAt(north, east, _, _) => (north, east)
+    case other => throw IllegalArgumentException(s"expected a velocity, got $other")
+
+  /** The altitude that it holds, m, NED; absent for a velocity down. */
+  def heldDownM: Option[Double] = action match
+    case Action.VelocityAt(_, _, down, _) => Some(down.value)
+    case Action.Along(_, _, down, _)      => Some(down.value)
+    case _                                => None
+
+/** A stretch of one vehicle's flight: the commands that arrived, and samples of its motion. Both are on one
+  * clock and ordered by time.
+  *
+  * @param downM altitude at the first sample, NED
   */
 final case class TimeHistory(
     name: String,
@@ -22,6 +37,8 @@ final case class TimeHistory(
 ):
 
   private val times = arrivals.map(_.atS).toArray
+
+  def spanS: Double = samples.lastOption.fold(0.0)(_.atS - samples.head.atS)
 
   /** The plant's state at each sample: predicted from the sample before, then corrected by the sample. */
   def states[S](plant: ObservedPlant[S]): Vector[S] =

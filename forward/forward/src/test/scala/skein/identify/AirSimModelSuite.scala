@@ -65,8 +65,8 @@ private final class TappedVehicle(vehicle: Vehicle) extends Vehicle:
   def act(action: Action): Unit =
     vehicle.act(action)
     action.byVelocity match
-      case Action.VelocityAt(vx, vy, _, _) => arrivals += ArrivedCommand(now, vx, vy)
-      case _                               => ()
+      case velocity: Action.VelocityAt => arrivals += ArrivedCommand(now, velocity)
+      case _                           => ()
 
   def advance(timeS: Double): Unit =
     vehicle.advance(timeS)

@@ -1,7 +1,9 @@
 package skein.identify
 
 import skein.forecast.Structure
+import skein.policy.Action
 import skein.signal.{NormalQuantile, SplitMix64}
+import skein.units.*
 import skein.vehicle.{PlantFlight, ReducedModel}
 
 class IdentificationSuite extends munit.FunSuite:
@@ -23,7 +25,7 @@ class IdentificationSuite extends munit.FunSuite:
     val arrivals = Vector.tabulate((spanS / 0.3).toInt): k =>
       val heading = 4 * source.nextDouble()
       val speed   = 3 + 8 * source.nextDouble()
-      ArrivedCommand(0.05 + 0.3 * k, speed * math.cos(heading), speed * math.sin(heading))
+      ArrivedCommand(0.05 + 0.3 * k, Action.Along(Radians(heading), MetresPerSecond(speed), Metres(-20)))
     val flight = PlantFlight(model)
     flight.start(0, model.initial)
     var next    = 0
@@ -95,6 +97,9 @@ class IdentificationSuite extends munit.FunSuite:
   test("flights that are too short, or that have constant commands, are refused with what was expected"):
     val short = Identification.of(Vector(flown(truth, 1, 0, spanS = 10)), Structure.Lag)
     assert(short.left.exists(_.contains("expected at least")), short)
+    // What remains before the last horizon counts.
+    val distant = Identification.of(Vector(flown(truth, 1, 0)), Structure.Lag, horizonS = 70)
+    assert(distant.left.exists(_.endsWith("got 0 s")), distant)
     val steady = flown(truth, 1, 0)
     val same   = Identification.of(Vector(steady.copy(arrivals = steady.arrivals.take(1))), Structure.Lag)
     assert(same.left.exists(_.contains("changing commands")), same)

@@ -1,8 +1,9 @@
 package skein.identify
 
 import skein.forecast.Structure
-import skein.policy.{Axis, SearchSpace}
+import skein.policy.{Action, Axis, SearchSpace}
 import skein.signal.{NormalQuantile, SplitMix64}
+import skein.units.*
 import skein.vehicle.{ObservedPlant, PlaneReading, PlantFlight}
 
 /** The state of a vehicle that must tilt before it accelerates; its readings lack the tilt. */
@@ -48,7 +49,7 @@ class OwnStructureSuite extends munit.FunSuite:
     def normal() = NormalQuantile(source.nextDouble().max(1e-12).min(1 - 1e-12))
     val arrivals = Vector.tabulate(200): k =>
       val (heading, speed) = (6 * source.nextDouble(), 3 + 8 * source.nextDouble())
-      ArrivedCommand(0.05 + 0.3 * k, speed * math.cos(heading), speed * math.sin(heading))
+      ArrivedCommand(0.05 + 0.3 * k, Action.Along(Radians(heading), MetresPerSecond(speed), Metres(-20)))
     val flight = PlantFlight(truth)
     flight.start(0, truth.initial)
     val samples = Vector.tabulate(600): k =>

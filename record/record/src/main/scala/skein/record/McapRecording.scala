@@ -44,14 +44,10 @@ object McapRecording:
           McapFile.write(file, options)(write(rows, scene, _))
         else
           // An existing file stays until the new one is complete.
-          val folder = Files.createTempDirectory(file.toAbsolutePath.getParent, ".skein")
-          val made   = folder.resolve("made.mcap")
-          try
+          WorkFolder.beside(file): folder =>
+            val made = folder.resolve("made.mcap")
             McapFile.write(made, options)(write(rows, scene, _))
             val _ = Files.move(made, file, StandardCopyOption.REPLACE_EXISTING)
-          finally
-            val _ = Files.deleteIfExists(made)
-            Files.delete(folder)
     yield ()
 
   private[record] val options = WriterOptions(library = "skein")
@@ -149,8 +145,7 @@ object McapRecording:
 
   private def imported(file: Path, recording: Path): Either[RecordError, Unit] =
     attempt(RecordError.CannotCreate(recording, _)):
-      val folder = Files.createTempDirectory(recording.toAbsolutePath.getParent, ".skein")
-      try
+      WorkFolder.beside(recording): folder =>
         val made = folder.resolve("recording.duckdb")
         for
           tables <- gather(file, folder)
@@ -162,10 +157,6 @@ object McapRecording:
             case other                                => other
         yield
           val _ = Files.move(made, recording)
-      finally
-        Using.resource(
-          Files.walk(folder)
-        )(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
     .flatten
 
   /** Writes the rows of each table that has any to a JSON file, a row a line, and measures the longest. */

@@ -53,7 +53,7 @@ final class McapRowSink private (channel: FileChannel, file: Path, heading: Reco
 
 object McapRowSink:
   /** Number of commits between two flushes, about one second of them. */
-  private val FlushEvery = 20
+  private val FlushEvery = 40
 
   /** Creates the file, which must not exist yet.
     *

@@ -64,7 +64,12 @@ private[record] final class RecordWriter(
         else idle()
       isEnding = true
       over.trySuccess(()): Unit
-    catch case NonFatal(error) => over.tryFailure(error): Unit
+    catch
+      // Out of memory, too: the end of a flight waits for this.
+      case error: Throwable =>
+        isEnding = true
+        over.tryFailure(error): Unit
+        if !NonFatal(error) then throw error
 
   /** Waits for records; one offered meanwhile wakes it. */
   private def idle(): Unit =

@@ -118,10 +118,17 @@ private[record] object RecordingFile:
     try Right(action)
     catch
       case failed: SQLException => Left(error(firstLine(failed.getMessage)))
-      // DuckDB unpacks its library into the folder for temporary files, which may be full or refuse it.
+      // Libraries are unpacked into the folder for temporary files, which may be full or refuse them.
       case failed: LinkageError =>
-        val cause = Iterator.iterate[Throwable](failed)(_.getCause).takeWhile(_ != null).toVector.last
-        Left(error(s"the database's library cannot be loaded: ${firstLine(s"${cause.getMessage}")}"))
+        val causes  = Iterator.iterate[Throwable](failed)(_.getCause).takeWhile(_ != null).toVector
+        val library = if causes.exists(isOfZstandard) then "Zstandard's" else "the database's"
+        Left(error(s"$library library cannot be loaded: ${firstLine(s"${causes.last.getMessage}")}"))
+
+  private def isOfZstandard(failure: Throwable) =
+    s"${failure.getMessage}".contains(Zstandard) ||
+      failure.getStackTrace.exists(_.getClassName.startsWith(Zstandard))
+
+  private val Zstandard = "com.github.luben.zstd"
 
   private def execute(connection: DuckDBConnection, sql: String): Unit =
     Using.resource(connection.createStatement()): statement =>

@@ -40,12 +40,12 @@ class McapRowSinkLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
     val mcap    = folder.resolve("cut.mcap")
     val written = sink(mcap)
     written.put(Samples.heading.records.zipWithIndex.map((record, at) => (at.toLong, record)))
-    for batch <- 1L to 20L do written.put(Seq((100 + batch, Samples.reading(batch))))
+    for batch <- 1L to 40L do written.put(Seq((100 + batch, Samples.reading(batch))))
     val readings = McapFile.stream(mcap): records =>
       records.count:
         case Right(Parsed.Found(_: Message, _, _)) => true
         case _                                     => false
-    assert(readings > 20, s"$readings messages")
+    assert(readings > 40, s"$readings messages")
     written.close()
 
   folder.test("a file that can no longer be written is reported, and the recording continues"): folder =>

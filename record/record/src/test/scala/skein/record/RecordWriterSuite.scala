@@ -21,6 +21,16 @@ class RecordWriterSuite extends munit.FunSuite:
     assertEquals(batches.result(), rows)
     assert(who.exists(_ != Thread.currentThread), "it was made by the thread that offered it")
 
+  test("any error of the writing thread ends it, even a fatal one"):
+    for error <- Seq(IllegalStateException("broken"), OutOfMemoryError("none left")) do
+      val quiet: java.util.concurrent.ThreadFactory =
+        Thread.ofPlatform().daemon().uncaughtExceptionHandler((_, _) => ()).factory()
+      val writer = RecordWriter(8, 0, 8, quiet)(_ => throw error)
+      assert(writer.offer(Samples.oneOfEach.head))
+      val reason = Await.result(writer.ended.failed, 30.seconds)
+      assertEquals(Option(reason.getCause).getOrElse(reason), error)
+      assert((1 to 20).forall(_ => writer.offer(Samples.oneOfEach.head)), "later rows are ignored")
+
   test("all rows offered while a batch is written are in the next batch"):
     val (begun, goesOn) = (CountDownLatch(1), CountDownLatch(1))
     val batches         = Vector.newBuilder[Vector[Record]]

@@ -17,3 +17,15 @@ class RecordingFileSuite extends munit.FunSuite:
       error.left.exists(_.endsWith("the database's library cannot be loaded: permission denied")),
       s"$error"
     )
+
+  test("if Zstandard's library cannot be loaded, it is named, at its first use and later"):
+    val first = UnsatisfiedLinkError("no room")
+    first.setStackTrace(Array(StackTraceElement(
+      "com.github.luben.zstd.util.Native",
+      "load",
+      "Native.java",
+      1
+    )))
+    val later = NoClassDefFoundError("Could not initialize class com.github.luben.zstd.Zstd")
+    for error <- Seq(first, later) do
+      assert(told(error).left.exists(_.contains("Zstandard's library cannot be loaded: ")), told(error))

@@ -24,10 +24,16 @@ const isWanted = topic => topic.startsWith("/skein/") ? tables.includes(topic.sl
 
 let flight, connection, changed = false, recorded, playing, warnings;
 
+/** What the server lists, the shown one's name, and the name of one that was added since then. */
+let flights = [], shown, added;
+
 /** What a test asks the page. */
 window.skein = { get flight() { return flight; }, get recorded() { return recorded; }, get playing() { return playing; }, get isConnected() { return connection.isOpen(); }, get cameras() { return [...cameras.cameras.values()]; }, frames: 0 };
 
 function show(id) {
+  shown = id;
+  added = undefined;
+  find("flights").value = id;
   const address = `/flights/${encodeURIComponent(id)}`;
   connection?.close();
   cameras.clear();
@@ -179,13 +185,33 @@ find("seek").oninput = () => {
 };
 find("seek").onchange = () => { seeking = false; };
 
-const flights = await (await fetch("/flights")).json();
-find("flights").replaceChildren(...flights.map(({ id }) => Object.assign(document.createElement("option"), { textContent: id })));
-find("flights").hidden = flights.length < 2;
-find("flights").onchange = () => show(find("flights").value);
-if (flights.length) show(flights[0].id);
-else {
-  state("no flight yet", true);
-  setTimeout(() => location.reload(), 1000);
+/** Lists the flights. One that was added while the shown one flew or later is shown when that has ended. */
+async function list() {
+  const before = flights.map(one => one.id);
+  flights = await (await fetch("/flights")).json();
+  const ids = flights.map(one => one.id);
+  if (String(ids) !== String(before)) {
+    find("flights").replaceChildren(...ids.map(id => Object.assign(document.createElement("option"), { textContent: id })));
+    find("flights").value = shown;
+  }
+  find("flights").hidden = ids.length < 2;
+  if (flight?.hasBegun) added = ids.findLast(id => !before.includes(id)) ?? added;
+  if (shown === undefined && ids.length) show(ids[0]);
+  else if (added && flight.ending) show(added);
+  else if (!ids.length) state("no flight yet", true);
 }
+
+let seconds = 0, ended;
+
+function listAgain() {
+  seconds++;
+  // A connection that is silent for more than five seconds makes room for others; a server whose flights have ended goes.
+  const isDue = shown === undefined || (flight.ending ? flight.ending === ended && connection.isOpen() : seconds % 6 === 0);
+  ended = flight?.ending;
+  if (isDue && !recorded) list().catch(() => { /* The connection says that the server is away. */ });
+}
+
+find("flights").onchange = () => show(find("flights").value);
+listAgain();
+setInterval(listAgain, 1000);
 requestAnimationFrame(draw);

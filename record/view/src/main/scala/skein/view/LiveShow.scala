@@ -57,7 +57,7 @@ final class LiveShow(
 
   def recorded: Option[(Instant, Instant)] = None
 
-  protected def greet(viewer: Viewer): Unit = ()
+  protected def greet(viewer: Viewer, now: Instant): Unit = ()
 
   def turn(now: Instant): Unit = synchronized:
     if ended.isEmpty then

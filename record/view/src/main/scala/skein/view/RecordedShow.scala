@@ -57,8 +57,8 @@ final class RecordedShow(
     showUntil(position)
     Right(())
 
-  protected def greet(viewer: Viewer): Unit =
-    viewer.notice("playback", ServerBytes(Protocol.playbackState(state(playback.since, seeked = false, ""))))
+  protected def greet(viewer: Viewer, now: Instant): Unit =
+    viewer.notice("playback", ServerBytes(Protocol.playbackState(state(now, seeked = false, ""))))
 
   private def begin(): Unit =
     topics = begun

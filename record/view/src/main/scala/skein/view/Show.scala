@@ -48,11 +48,11 @@ abstract class Show private[view] (
 
   def control(playback: ClientMessage.Playback, now: Instant): Either[String, Unit]
 
-  private[view] def entered(viewer: Viewer): Unit = synchronized:
+  private[view] def entered(viewer: Viewer, now: Instant): Unit = synchronized:
     viewers += viewer
     viewer.notice("info", ServerText(Protocol.serverInfo(s"Skein: $id", Show.session, recorded)))
     viewer.notice("advertise", ServerText(Protocol.advertise(channels)))
-    greet(viewer)
+    greet(viewer, now)
 
   private[view] def left(viewer: Viewer): Unit = synchronized(viewers -= viewer): Unit
 
@@ -61,7 +61,7 @@ abstract class Show private[view] (
       viewer.offer(subscription, shown.at, shown.payload, latest(channel))
 
   /** Sends the first messages to a new viewer. */
-  protected def greet(viewer: Viewer): Unit
+  protected def greet(viewer: Viewer, now: Instant): Unit
 
   protected def publish(message: FlightMessage): Unit = synchronized:
     for channel <- byTopic.get(message.topic) do

@@ -27,7 +27,7 @@ private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalC
       private val viewer  = Viewer(show.limits, show.channels.map(_.id).toSet, () => woken.invoke(()))
 
       override def preStart(): Unit =
-        show.entered(viewer)
+        show.entered(viewer, clock.now())
         pull(in)
 
       override def postStop(): Unit = show.left(viewer)

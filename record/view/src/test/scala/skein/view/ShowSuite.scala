@@ -21,7 +21,7 @@ class ShowSuite extends munit.FunSuite:
   /** Subscribes by the channels' own numbers. */
   private def watching(show: Show, topics: String*): Viewer =
     val viewer = Viewer(show.limits, show.channels.map(_.id).toSet, () => ())
-    show.entered(viewer)
+    show.entered(viewer, at(0))
     for channel <- show.channels if topics.contains(channel.topic.name) do
       assertEquals(viewer.subscribe(channel.id, channel.id), Right(()))
       show.subscribed(viewer, channel.id, channel.id)
@@ -190,6 +190,19 @@ class ShowSuite extends munit.FunSuite:
     assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(2.0, 3.0))
     show.turn(at(9))
     assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(4.0, 5.0))
+
+  test("a viewer that connects during or after playback receives its present state"):
+    val show         = replay
+    val Some((a, b)) = show.recorded: @unchecked
+    show.control(ClientMessage.Playback(playing = true, 1, None, ""), at(1)): Unit
+    def greeting(now: Instant) =
+      val viewer = Viewer(show.limits, Set.empty, () => ())
+      show.entered(viewer, now)
+      Vector.unfold(())(_ => viewer.take().map((_, ()))).last
+    def playing(status: Protocol.Status, position: Instant) =
+      ServerBytes(Protocol.playbackState(Protocol.Playing(status, position, 1, seeked = false, "")))
+    assertEquals(greeting(at(1.1)), playing(Protocol.Status.Playing, a + Span.ofMillis(100)))
+    assertEquals(greeting(at(9)), playing(Protocol.Status.Ended, b))
 
   test("after a seek backwards earlier rows are shown again, and later ones can be played again"):
     val show         = replay

@@ -15,3 +15,16 @@ object SensorKind:
     Map("imu" -> Imu, "magnetometer" -> Magnetometer, "gps" -> Gps, "barometer" -> Barometer)
 
   def of(number: Double): Option[SensorKind] = values.find(_.number.toDouble == number)
+
+/** The sensors that a part of the settings lists.
+  *
+  * @param kinds the listed kinds
+  * @param enabled those switched on, keyed by name
+  */
+final case class ListedSensors(
+    kinds: Set[SensorKind] = Set.empty,
+    enabled: Map[String, SensorKind] = Map.empty
+):
+  /** With those of `unless` for kinds of which none is listed. */
+  def over(unless: Map[String, SensorKind]): Map[String, SensorKind] =
+    unless.filterNot((_, kind) => kinds(kind)) ++ enabled

@@ -3,7 +3,7 @@ package skein.airsim
 import skein.port.VehicleError
 import skein.rpc.RpcError
 
-private object VehicleErrors:
+private[skein] object VehicleErrors:
 
   val noReading: VehicleError = VehicleError.TimedOut("the vehicle's sensors have no reading")
 

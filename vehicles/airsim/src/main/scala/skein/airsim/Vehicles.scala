@@ -27,11 +27,14 @@ object Vehicles:
     case car: Car               => AirSimCar(car)
 
   /** Settings of a scenario's agent: on the ground below its start, heading towards its goal. */
-  def settings(agent: Agent): VehicleSettings = VehicleSettings(
-    agent.name,
-    agent.startPositionNed.copy(z = 0),
-    agent.startHeading,
-    agent.kind match
+  def settings(agent: Agent): VehicleSettings =
+    val vehicleType = agent.kind match
       case VehicleKind.Multirotor => WorldSettings.SimpleFlight
       case VehicleKind.Car        => WorldSettings.PhysXCar
-  )
+    VehicleSettings(
+      agent.name,
+      agent.startPositionNed.copy(z = 0),
+      agent.startHeading,
+      vehicleType,
+      sensors = WorldSettings.usualSensors(vehicleType)
+    )

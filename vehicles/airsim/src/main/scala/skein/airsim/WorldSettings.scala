@@ -27,6 +27,8 @@ final case class VehicleSettings(
   /** Whether this is a fixed camera and not a vehicle. */
   def isCamera: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.ComputerVision)
 
+  def isMultirotor: Boolean = !isCar && !isCamera
+
 /** The part of an AirSim `settings.json` that is read: vehicles with their sensors, origin, wind and clock
   * speed. Everything else in it is ignored. `SimMode` is the type of vehicles that name none; unlike
   * AirSim's, a world may have vehicles of several types. Vehicles with `AutoCreate` false are left out.
@@ -34,7 +36,7 @@ final case class VehicleSettings(
   * @param vehicles the vehicles, in the file's order
   * @param origin geographic origin of the world's NED frame
   * @param text the file's text, unchanged
-  * @param addedSensors sensors of a vehicle that is added later (`simAddVehicle`): `DefaultSensors`
+  * @param defaultSensors `DefaultSensors`, also for vehicles that are added later (`simAddVehicle`)
   * @param apiPort `ApiServerPort`
   */
 final case class WorldSettings(
@@ -43,7 +45,7 @@ final case class WorldSettings(
     windNed: Vector3 = Vector3.Zero,
     clockSpeed: Double = 1.0,
     text: String = "{}",
-    addedSensors: Map[String, SensorKind] = SensorKind.Default,
+    defaultSensors: ListedSensors = ListedSensors(),
     apiPort: Option[Int] = None
 ):
   require(vehicles.nonEmpty, "a world needs a vehicle")
@@ -66,6 +68,14 @@ object WorldSettings:
   val ComputerVision = "ComputerVision"
 
   private val CarMode = "Car"
+
+  /** The sensors of a vehicle of this type whose settings name none, as in AirSim: a car has a GPS, a camera
+    * nothing.
+    */
+  def usualSensors(vehicleType: String): Map[String, SensorKind] =
+    if vehicleType.equalsIgnoreCase(PhysXCar) then Map("gps" -> SensorKind.Gps)
+    else if vehicleType.equalsIgnoreCase(ComputerVision) then Map.empty
+    else SensorKind.Default
 
   /** AirSim's default home, in degrees and m above the sea. */
   val DefaultOrigin: GeoLocation = GeoLocation(47.641468, -122.140165, Metres(122))
@@ -123,18 +133,23 @@ object WorldSettings:
   )
 
   private[skein] def read(root: SettingsSection, text: String): WorldSettings =
-    val unless = sensors(root.sections("DefaultSensors"), SensorKind.Default)
+    val shared = sensors(root.sections("DefaultSensors"))
     val usual  = root.text("SimMode", "") match
       case CarMode        => PhysXCar
       case ComputerVision => ComputerVision
       case _              => SimpleFlight
     val listed   = root.sections("Vehicles")
-    val vehicles = created(listed).map((name, fields) => vehicle(name, fields, usual, unless))
+    val vehicles = created(listed).map((name, fields) => vehicle(name, fields, usual, shared))
     if listed.nonEmpty && vehicles.isEmpty then
       root.fail("Vehicles", "at least one without AutoCreate false", "none")
     val origin = root.section("OriginGeopoint")
     WorldSettings(
-      if listed.isEmpty then Vector(VehicleSettings(usual, vehicleType = usual, sensors = unless))
+      if listed.isEmpty then
+        Vector(VehicleSettings(
+          usual,
+          vehicleType = usual,
+          sensors = shared.over(usualSensors(usual))
+        ))
       else vehicles,
       GeoLocation(
         origin.number("Latitude", DefaultOrigin.latitudeDeg),
@@ -144,7 +159,7 @@ object WorldSettings:
       root.section("Wind").vector,
       clockSpeed(root),
       text,
-      unless,
+      shared,
       Option.when(root.has("ApiServerPort"))(root.whole("ApiServerPort", 0, 1, 65535))
     )
 
@@ -163,38 +178,34 @@ object WorldSettings:
       name: String,
       fields: SettingsSection,
       usual: String,
-      unless: Map[String, SensorKind]
+      shared: ListedSensors
   ): VehicleSettings =
+    val vehicleType = fields.text("VehicleType", usual) match
+      case ""   => usual
+      case kind => kind
     VehicleSettings(
       name,
       fields.vector,
       Radians(math.toRadians(fields.number("Yaw", 0))),
-      fields.text("VehicleType", usual) match
-        case ""   => usual
-        case kind =>
-          kind
-      ,
+      vehicleType,
       fields.flag("IsFpvVehicle", unless = false),
       fields.text("DefaultVehicleState", "Armed") match
         case "Armed"                 => true
         case "Inactive" | "Disarmed" => false
         case other => fields.fail("DefaultVehicleState", "Armed, Inactive or Disarmed", s"'$other'")
       ,
-      sensors(fields.sections("Sensors"), unless)
+      sensors(fields.sections("Sensors")).over(shared.over(usualSensors(vehicleType)))
     )
 
-  /** The sensors that are enabled; for kinds of which none is listed, those of `unless`. Unknown kinds, which
-    * forks have, count as not read.
-    */
-  private def sensors(
-      all: Vector[(String, SettingsSection)],
-      unless: Map[String, SensorKind]
-  ): Map[String, SensorKind] =
+  /** Unknown kinds, which forks have, count as not read. */
+  private def sensors(all: Vector[(String, SettingsSection)]): ListedSensors =
     val listed =
       for (name, sensor) <- all yield
         val kind    = SensorKind.of(sensor.number("SensorType", 0))
         val enabled = sensor.flag("Enabled", unless = false)
         if !enabled then sensor.switchedOff() else if kind.isEmpty then sensor.passedOver()
         (name, kind, enabled)
-    unless.filterNot((_, kind) => listed.exists(_._2.contains(kind))) ++
-      listed.collect { case (name, Some(kind), true) => name -> kind }
+    ListedSensors(
+      listed.flatMap(_._2).toSet,
+      listed.collect { case (name, Some(kind), true) => name -> kind }.toMap
+    )

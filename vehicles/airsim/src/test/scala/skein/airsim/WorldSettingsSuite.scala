@@ -13,7 +13,11 @@ class WorldSettingsSuite extends munit.FunSuite:
   test("SimMode sets the type of vehicles without one, and a world may have vehicles of both types"):
     assertEquals(
       WorldSettings.parse("""{"SimMode": "Car"}""").map(_.vehicles),
-      Right(Vector(VehicleSettings("PhysXCar", vehicleType = "PhysXCar")))
+      Right(Vector(VehicleSettings(
+        "PhysXCar",
+        vehicleType = "PhysXCar",
+        sensors = WorldSettings.usualSensors("PhysXCar")
+      )))
     )
     val mixed = WorldSettings.parse(
       """{"SimMode": "Car", "Vehicles": {"A": {"X": 3}, "B": {"VehicleType": "SimpleFlight"}}}"""
@@ -112,3 +116,15 @@ class WorldSettingsSuite extends munit.FunSuite:
     assertEquals(fork, SensorKind.Default)
     val shared = only("", """, "DefaultSensors": {"G": {"SensorType": 3, "Enabled": true}}""").sensors
     assertEquals(shared, SensorKind.Default - "gps" + ("G" -> SensorKind.Gps))
+
+  test("a car has a GPS by default and a camera nothing, as in AirSim"):
+    def sensors(text: String) =
+      WorldSettings.parse(text).fold(error => fail(error.message), _.vehicles.map(_.sensors))
+    val gps = Map("gps" -> SensorKind.Gps)
+    assertEquals(sensors("""{"SimMode": "Car"}"""), Vector(gps))
+    assertEquals(sensors("""{"SimMode": "ComputerVision"}"""), Vector(Map.empty))
+    assertEquals(
+      sensors("""{"SimMode": "Car", "DefaultSensors": {"I": {"SensorType": 2, "Enabled": true}},
+        "Vehicles": {"A": {}, "B": {"VehicleType": "SimpleFlight"}}}"""),
+      Vector(gps + ("I" -> SensorKind.Imu), SensorKind.Default - "imu" + ("I" -> SensorKind.Imu))
+    )

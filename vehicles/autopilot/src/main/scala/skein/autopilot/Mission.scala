@@ -8,11 +8,13 @@ import skein.units.Decimals.fixed
   *
   * @param current the item it flies to
   * @param reachedAt since when the vehicle is at that item
+  * @param sender system number of the peer that uploaded it
   */
 final case class Mission(
     items: Vector[MissionItemInt] = Vector.empty,
     current: Int = 0,
-    reachedAt: Option[Span] = None
+    reachedAt: Option[Span] = None,
+    sender: Option[Int] = None
 ):
   def isOver: Boolean              = current >= items.size
   def item: Option[MissionItemInt] = items.lift(current)

@@ -87,7 +87,13 @@ private[autopilot] final case class MissionTransfer(
               val more = going.copy(items = going.items :+ item, askedAt = sinceBoot, tries = 1)
               if more.items.size < more.count then Told(copy(upload = Some(more)), Vector(more.question))
               else
-                Told(MissionTransfer(Mission(more.items), None, home), Vector(more.ack(Mission.Ack.Accepted)))
+                val loaded = Mission(more.items, sender = Some(going.system))
+                Told(MissionTransfer(loaded, None, home), Vector(more.ack(Mission.Ack.Accepted)))
+      // The acknowledgement was lost.
+      case None
+          if mission.sender.contains(from.system) && item.seq == mission.items.size - 1 &&
+            item.missionType == Mission.Kind =>
+        Told(this, Vector(ack(from, Mission.Ack.Accepted)))
       case _ => Told(this, Vector(ack(from, Mission.Ack.OutOfOrder)))
 
 private[autopilot] object MissionTransfer:

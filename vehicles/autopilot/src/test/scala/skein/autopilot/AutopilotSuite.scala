@@ -151,6 +151,9 @@ class AutopilotSuite extends munit.FunSuite:
       val heard = before._1.told(item, at(6, flying = true))
       (heard.next, heard.answers)
     assertEquals(asked, Vector(MissionAck(245, 190, 0)))
+    // A sender that missed the acknowledgement sends its last item once more.
+    assertEquals(loaded.told(items.last, at(6)).answers, Vector(MissionAck(245, 190, 0)))
+    assertEquals(loaded.told(items.head, at(6)).answers, Vector(MissionAck(245, 190, 13)))
     assertEquals(loaded.told(MissionRequestList(1, 1), at(6)).answers, Vector(MissionCount(245, 190, 3)))
     val flying   = loaded.told(command(300), at(7, flying = true)).next
     val underWay = flying.flown(at(8, Vector3(10, 0, -5), flying = true))

@@ -8,6 +8,8 @@ import skein.units.{Quaternion, Vector3}
   * @param position mounting position on the vehicle, front right down, m
   * @param orientation relative to the vehicle
   * @param distortion K1, K2, K3, P1, P2 of the Brown-Conrady model
+  * @param isZoomed whether a client has set its field of view, lens or film: then it holds for all image
+  *   types
   */
 final private[simulator] case class Camera(
     position: Vector3,
@@ -17,7 +19,8 @@ final private[simulator] case class Camera(
     focalLengthMm: Float = Filmback.DigitalFilm.focalLengthMm(Camera.DefaultFovDeg),
     apertureF: Float = 2.8f,
     focusDistanceCm: Float = 100_000f,
-    distortion: Vector[Float] = Vector.fill(Camera.DistortionNames.size)(0f)
+    distortion: Vector[Float] = Vector.fill(Camera.DistortionNames.size)(0f),
+    isZoomed: Boolean = false
 ):
   /** Horizontal field of view, degrees, from film and focal length. */
   def fovDeg: Float = filmback.fovDeg(focalLengthMm)
@@ -26,10 +29,14 @@ final private[simulator] case class Camera(
     math.toDegrees(2 * StrictMath.atan(filmback.heightMm / (2.0 * focalLengthMm))).toFloat
 
   /** A camera with this horizontal field of view: sets the focal length, as Unreal's cine camera does. */
-  def withFov(degrees: Float): Camera = copy(focalLengthMm = filmback.focalLengthMm(degrees))
+  def withFov(degrees: Float): Camera =
+    copy(focalLengthMm = filmback.focalLengthMm(degrees), isZoomed = true)
 
   /** A camera with this focal length, clamped to the lens's range. */
-  def withFocalLength(mm: Float): Camera = copy(focalLengthMm = mm.max(lens.shortestMm).min(lens.longestMm))
+  def withFocalLength(mm: Float): Camera =
+    copy(focalLengthMm = mm.max(lens.shortestMm).min(lens.longestMm), isZoomed = true)
+
+  def withFilm(filmback: Filmback): Camera = copy(filmback = filmback, isZoomed = true)
 
   def withLens(lens: Lens): Camera = copy(lens = lens).withFocalLength(focalLengthMm)
 

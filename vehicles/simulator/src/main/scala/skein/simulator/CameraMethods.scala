@@ -53,14 +53,14 @@ private[simulator] object CameraMethods:
     get("simGetPresetFilmbackSettings")(_ => answer(Filmback.Presets.map(_.text))),
     get("simGetFilmbackSettings")(camera => answer(camera.filmback.text)),
     preset("simSetPresetFilmbackSettings", Filmback.Presets, _.name)((camera, filmback) =>
-      camera.copy(filmback = filmback)
+      camera.withFilm(filmback)
     ),
     many[(Float, Float, String, String, Boolean)]("simSetFilmbackSettings"):
       case (simulation, (width, height, camera, name, external)) =>
         positive("a sensor's width", width, LargestMm):
           positive("a sensor's height", height, LargestMm):
             val film = Filmback("Custom...", width, height)
-            change(simulation, camera, name, external)(_.copy(filmback = film)) match
+            change(simulation, camera, name, external)(_.withFilm(film)) match
               case CallOutcome.Answered(_) => answer(film.aspectRatio)
               case refused                 => refused
     ,

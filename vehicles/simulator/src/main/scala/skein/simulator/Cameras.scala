@@ -29,7 +29,7 @@ final private[simulator] class Cameras(equipment: SensorSettings):
     val placed  = equipment.cameras.get(called).flatMap(_.get(name)).flatMap(_.place).fold(builtIn): place =>
       builtIn.copy(position = place.position, orientation = place.orientation)
     val fovDeg = equipment.capture(called, name, imageType = 0).fovDeg
-    if fovDeg == Camera.DefaultFovDeg then placed else placed.withFov(fovDeg)
+    if fovDeg == Camera.DefaultFovDeg then placed else placed.withFov(fovDeg).copy(isZoomed = false)
 
   def update(vehicle: Int, name: String, camera: Camera): Unit = changed((vehicle, name)) = camera
 

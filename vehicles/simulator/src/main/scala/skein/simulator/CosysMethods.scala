@@ -97,7 +97,7 @@ private[simulator] object CosysMethods:
     many[(String, Pose, String)](method):
       case (simulation, (sensor, _, name)) =>
         vehicle(simulation, name): (_, vehicle) =>
-          val own = vehicle.settings.name
+          val own = vehicle.settings
           if kind == "lidar" && simulation.equipment.lidar(own, sensor).nonEmpty ||
             kind == "distance sensor" && simulation.equipment.ranger(own, sensor).nonEmpty
           then CallOutcome.Threw("sensors stay where the settings put them")

@@ -1,6 +1,6 @@
 package skein.simulator
 
-import skein.airsim.VehicleSettings
+import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.airsim.wire.*
 import skein.scene.Placement
 import skein.units.*
@@ -86,7 +86,7 @@ private[simulator] object SceneMethods:
       CallOutcome.Threw(s"the built-in simulator flies at most $MostVehicles vehicles")
     else if start.norm > FarthestM then CallOutcome.Threw(s"a start within ${FarthestM / 1000} km is wanted")
     else
-      val sensors = simulation.settings.world.addedSensors
+      val sensors = simulation.settings.world.defaultSensors.over(WorldSettings.usualSensors(kind))
       val added   = VehicleSettings(name, start, vehicleType = kind, sensors = sensors)
       val known   = VehicleLimits.flies(added) && !simulation.objects.exists(name)
       if known then

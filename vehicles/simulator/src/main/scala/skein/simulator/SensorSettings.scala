@@ -1,22 +1,21 @@
 package skein.simulator
 
-import skein.airsim.{SensorKind, SettingsError, SettingsSection, WorldSettings}
+import skein.airsim.{SensorKind, SettingsError, SettingsSection, VehicleSettings, WorldSettings}
 import skein.scene.{Lidar, Placement}
+import skein.units.Vector3
 
 /** The cameras, lidars and distance sensors of a `settings.json`. Keys and defaults are AirSim's; a lidar has
   * three more: `RangeNoise` (standard deviation, m), `NoiseSeed`, and `Fresh` (scans are taken on request, of
-  * that instant).
+  * that instant). As in AirSim, lidars and distance sensors of cars and cameras are by default 1 m above the
+  * vehicle, and their lidars see from 10° below the horizon to 10° above (`LidarSimpleParams`).
   *
   * @param captures image settings of `CameraDefaults`, by image type
-  * @param lidars the lidars by vehicle; those of `DefaultSensors` under [[SensorSettings.Others]] apply to
-  *   vehicles that the file does not list: the default vehicle of a file without vehicles, and those that
-  *   clients add
   */
 final private[simulator] case class SensorSettings(
     captures: Map[Int, SensorSettings.Capture],
     cameras: Map[String, Map[String, SensorSettings.Carried]],
-    lidars: Map[String, Vector[(String, Lidar)]],
-    rangers: Map[String, Vector[(String, SensorSettings.Ranger)]]
+    lidars: SensorSettings.Fitted[Lidar],
+    rangers: SensorSettings.Fitted[SensorSettings.Ranger]
 ):
   /** Image size and field of view of a vehicle's camera. */
   def capture(vehicle: String, camera: String, imageType: Int): SensorSettings.Capture =
@@ -24,20 +23,27 @@ final private[simulator] case class SensorSettings(
       .orElse(captures.get(imageType)).getOrElse(SensorSettings.Capture())
 
   /** A vehicle's lidar by name; an empty name means the first. */
-  def lidar(vehicle: String, name: String): Option[(String, Lidar)] =
-    lidarsOf(vehicle).find((own, _) => name.isEmpty || own == name)
+  def lidar(vehicle: VehicleSettings, name: String): Option[(String, Lidar)] =
+    lidars.of(vehicle).find((own, _) => name.isEmpty || own == name)
 
-  def lidarsOf(vehicle: String): Vector[(String, Lidar)] = of(lidars, vehicle)
-
-  def ranger(vehicle: String, name: String): Option[SensorSettings.Ranger] =
-    of(rangers, vehicle).find((own, _) => name.isEmpty || own == name).map(_._2)
-
-  private def of[A](all: Map[String, Vector[A]], vehicle: String): Vector[A] =
-    all.get(vehicle).orElse(all.get(SensorSettings.Others)).getOrElse(Vector.empty)
+  def ranger(vehicle: VehicleSettings, name: String): Option[SensorSettings.Ranger] =
+    rangers.of(vehicle).find((own, _) => name.isEmpty || own == name).map(_._2)
 
 private[simulator] object SensorSettings:
-  /** Stands for vehicles that the file does not list; no vehicle's name is empty. */
-  val Others = ""
+  /** The sensors of one kind, by name.
+    *
+    * @param listed those of the vehicles that the file lists
+    * @param flying those of `DefaultSensors`, for other multirotors: the default vehicle of a file without
+    *   vehicles, and those that clients add
+    * @param others those of `DefaultSensors`, for other cars and cameras
+    */
+  final case class Fitted[A](
+      listed: Map[String, Vector[(String, A)]] = Map.empty,
+      flying: Vector[(String, A)] = Vector.empty,
+      others: Vector[(String, A)] = Vector.empty
+  ):
+    def of(vehicle: VehicleSettings): Vector[(String, A)] =
+      listed.getOrElse(vehicle.name, if vehicle.isMultirotor then flying else others)
 
   final case class Capture(width: Int = 256, height: Int = 144, fovDeg: Float = 90)
 
@@ -52,34 +58,41 @@ private[simulator] object SensorSettings:
 
   val MostPixels: Int = 8192 * 4096
 
-  val None: SensorSettings = SensorSettings(Map.empty, Map.empty, Map.empty, Map.empty)
+  val None: SensorSettings = SensorSettings(Map.empty, Map.empty, Fitted(), Fitted())
 
   /** Reads the sensors from the file's text, which is JSON. */
-  def read(text: String): Either[SettingsError, SensorSettings] = SettingsSection.read(text)(of)
+  def read(text: String): Either[SettingsError, SensorSettings] = SettingsSection.read(text)(root =>
+    of(root, WorldSettings.read(root, text))
+  )
 
-  private[simulator] def of(root: SettingsSection): SensorSettings =
+  private[simulator] def of(root: SettingsSection, world: WorldSettings): SensorSettings =
     val vehicles = WorldSettings.created(root.sections("Vehicles"))
+    val flies    = world.vehicles.map(vehicle => vehicle.name -> vehicle.isMultirotor).toMap
     val unless   = root.sections("DefaultSensors")
-    def sensors[A](kind: SensorKind)(read: SettingsSection => A) =
+    def sensors[A](kind: SensorKind)(read: (SettingsSection, Boolean) => A) =
       def listed(all: Vector[(String, SettingsSection)]) =
         all.filter((_, sensor) => sensor.number("SensorType", 0) == kind.number.toDouble)
-      def enabled(all: Vector[(String, SettingsSection)]) = all
+      def enabled(all: Vector[(String, SettingsSection)], flies: Boolean) = all
         .filter((_, sensor) => sensor.flag("Enabled", unless = false))
-        .map((sensorName, sensor) => sensorName -> read(sensor))
-      val others = enabled(listed(unless))
-      vehicles.map: (name, vehicle) =>
+        .map((sensorName, sensor) => sensorName -> read(sensor, flies))
+      val shared = listed(unless)
+      val own    = vehicles.map: (name, vehicle) =>
         // As for other kinds, a vehicle's own list of a kind replaces the default list.
         val own = listed(vehicle.sections("Sensors"))
-        name -> (if own.nonEmpty then enabled(own) else others)
-      .toMap + (Others -> others)
+        name -> enabled(if own.nonEmpty then own else shared, flies(name))
+      Fitted(own.toMap, enabled(shared, flies = true), enabled(shared, flies = false))
     SensorSettings(
       captures(root.section("CameraDefaults"), Capture()),
       vehicles.map((name, vehicle) =>
         name -> vehicle.sections("Cameras").map((n, c) => n -> camera(c)).toMap
       ).toMap,
       sensors(SensorKind.Lidar)(lidar),
-      sensors(SensorKind.Distance)(sensor =>
-        Ranger(placeOf(sensor), sensor.number("MinDistance", 0.2), sensor.number("MaxDistance", 40))
+      sensors(SensorKind.Distance)((sensor, flies) =>
+        Ranger(
+          placeOf(sensor, downM(flies)),
+          sensor.number("MinDistance", 0.2),
+          sensor.number("MaxDistance", 40)
+        )
       )
     )
 
@@ -97,8 +110,8 @@ private[simulator] object SensorSettings:
         Capture(width, height, capture.number("FOV_Degrees", unless.fovDeg, 1, 179).toFloat)
     .toMap
 
-  private def lidar(section: SettingsSection): Lidar =
-    val unless = Lidar()
+  private def lidar(section: SettingsSection, flies: Boolean): Lidar =
+    val unless = if flies then Lidar() else Lidar(verticalFovDeg = (-10, 10))
     Lidar(
       channels = section.whole("NumberOfChannels", unless.channels, 1, 1024),
       rangeM = section.number("Range", unless.rangeM, 0.01, 100_000),
@@ -112,7 +125,7 @@ private[simulator] object SensorSettings:
         section.number("VerticalFOVLower", unless.verticalFovDeg._1, -90, 90),
         section.number("VerticalFOVUpper", unless.verticalFovDeg._2, -90, 90)
       ),
-      place = placeOf(section),
+      place = placeOf(section, downM(flies)),
       sensorFrame = section.text("DataFrame", "VehicleInertialFrame") match
         case "VehicleInertialFrame" => false
         case "SensorLocalFrame"     => true
@@ -123,9 +136,11 @@ private[simulator] object SensorSettings:
       fresh = section.flag("Fresh", unless = false)
     )
 
-  private def placeOf(section: SettingsSection): Placement =
+  private def downM(flies: Boolean) = if flies then 0.0 else -1.0
+
+  private def placeOf(section: SettingsSection, downM: Double = 0): Placement =
     Placement.turned(
-      section.vector,
+      Vector3(section.number("X", 0), section.number("Y", 0), section.number("Z", downM)),
       section.number("Roll", 0),
       section.number("Pitch", 0),
       section.number("Yaw", 0)

@@ -23,7 +23,7 @@ object SettingsFile:
     val local = localOnly(root)
     checkMode(root)
     checkWorld(root, world)
-    val _ = SensorSettings.of(root)
+    val _ = SensorSettings.of(root, world)
     SettingsFile(world, root.unread ++ local)
 
   /** The notice for a file that contains a network address. The address has no effect: a file may come from
@@ -47,8 +47,12 @@ object SettingsFile:
   /** Checks bounds within which physics stays finite and the air's formulas are valid. */
   private def checkWorld(root: SettingsSection, world: WorldSettings): Unit =
     root.number("ClockSpeed", 1, 0.001, 1000): Unit
-    val wind = root.section("Wind")
-    for axis <- Seq("X", "Y", "Z") do wind.number(axis, 0, -MostWindMps, MostWindMps): Unit
+    if world.windNed.norm > VehicleLimits.FastestWindMps then
+      root.fail(
+        "Wind",
+        s"at most ${VehicleLimits.FastestWindMps.round} m/s",
+        s"${world.windNed.norm.round} m/s"
+      )
     val origin = root.section("OriginGeopoint")
     origin.number("Latitude", 0, -90, 90): Unit
     origin.number("Longitude", 0, -180, 180): Unit
@@ -69,7 +73,6 @@ object SettingsFile:
       if !VehicleLimits.flies(vehicle) then
         fields.fail("VehicleType", VehicleLimits.Types.mkString(", "), s"'${vehicle.vehicleType}'")
 
-  private val Modes       = Vector("Multirotor", "Car", "ComputerVision")
-  private val Engines     = Vector("FastPhysicsEngine", "PhysX")
-  private val Loopback    = Set("", "127.0.0.1", "localhost")
-  private val MostWindMps = 1000.0
+  private val Modes    = Vector("Multirotor", "Car", "ComputerVision")
+  private val Engines  = Vector("FastPhysicsEngine", "PhysX")
+  private val Loopback = Set("", "127.0.0.1", "localhost")

@@ -71,7 +71,7 @@ private[simulator] object Shots:
       place.outside(Placement(seen.position, seen.orientation)),
       capture.width,
       capture.height,
-      fovDeg(seen)
+      fovDeg(if seen.isZoomed then seen else seen.withFov(capture.fovDeg))
     )
 
   /** The camera's field of view, clamped to the range of an image, because films and lenses can be set to

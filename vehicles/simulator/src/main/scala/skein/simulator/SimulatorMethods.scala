@@ -24,8 +24,9 @@ private[simulator] object SimulatorMethods:
     none("getSettingsString")(simulation => answer(simulation.settings.world.text)),
     none("skeinSensors")(simulation => answer(simulation.settings.sensing.fold("")(_.noise.text))),
     one[Vector3r]("simSetWind"): (simulation, wind) =>
-      if wind.toVector.norm <= FastestWindMps then done(simulation.world.setWind(wind.toVector))
-      else CallOutcome.Threw(s"a wind of at most ${FastestWindMps.round} m/s is wanted")
+      if wind.toVector.norm <= VehicleLimits.FastestWindMps then
+        done(simulation.world.setWind(wind.toVector))
+      else CallOutcome.Threw(s"a wind of at most ${VehicleLimits.FastestWindMps.round} m/s is wanted")
   )
 
   /** Rate at which frames are converted to time: that of a renderer that keeps up with a usual screen. */
@@ -33,8 +34,5 @@ private[simulator] object SimulatorMethods:
 
   /** Longest stepped advance, s: a day, far beyond use and far below what would overflow a clock. */
   private val LongestStepS = 86400.0
-
-  /** Maximum wind speed, m/s; beyond it physics' steps would be too long. */
-  private val FastestWindMps = 300.0
 
   private def steps(span: Span): CallOutcome = CallOutcome.Steps(span.max(Span.Zero))

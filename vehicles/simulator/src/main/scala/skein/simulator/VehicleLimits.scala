@@ -12,6 +12,9 @@ private[simulator] object VehicleLimits:
   /** Maximum distance from the origin, m; beyond it numbers lose their precision. */
   val FarthestM = 1e6
 
+  /** Maximum wind speed, m/s; beyond it physics' steps would be too long. */
+  val FastestWindMps = 300.0
+
   val Types: Vector[String] =
     Vector(WorldSettings.SimpleFlight, WorldSettings.PhysXCar, WorldSettings.ComputerVision)
 

@@ -78,7 +78,7 @@ private[simulator] object VehicleMethods:
         vehicle(simulation, name): (index, vehicle) =>
           val scan =
             for
-              (own, lidar) <- simulation.equipment.lidar(vehicle.settings.name, sensor)
+              (own, lidar) <- simulation.equipment.lidar(vehicle.settings, sensor)
               scan         <- simulation.world.scanOf(index, own, lidar)
             yield scan
           scan.fold(missing("lidar", sensor)): scan =>
@@ -88,7 +88,7 @@ private[simulator] object VehicleMethods:
     many[(String, String)]("getDistanceSensorData"):
       case (simulation, (sensor, name)) =>
         vehicle(simulation, name): (index, vehicle) =>
-          simulation.equipment.ranger(vehicle.settings.name, sensor).fold(missing("distance sensor", sensor)):
+          simulation.equipment.ranger(vehicle.settings, sensor).fold(missing("distance sensor", sensor)):
             ranger => answer(distance(simulation, index, ranger))
   )
 

@@ -45,7 +45,7 @@ final class World(
 
   private var shaped: (vehicles: Vector[SimulatedVehicle], tagM: Double, shapes: Vector[Bodies.Shaped]) =
     (Vector.empty, 0, Vector.empty)
-  settings.vehicles.zipWithIndex.foreach((vehicle, index) => equip(index, vehicle.name))
+  settings.vehicles.zipWithIndex.foreach((vehicle, index) => equip(index, vehicle))
 
   present.zipWithIndex.foreach((vehicle, index) => vehicle.start(start, sensing, index))
   setWind(wind)
@@ -62,8 +62,8 @@ final class World(
     case other                           =>
       throw IllegalArgumentException(s"expected a multirotor, ${other.settings.name} is a ${other.kind}")
 
-  private def equip(index: Int, name: String): Unit =
-    for (own, lidar) <- equipment.lidarsOf(name) do scans.carry(Scans.Carried(index, own, lidar))
+  private def equip(index: Int, vehicle: VehicleSettings): Unit =
+    for (own, lidar) <- equipment.lidars.of(vehicle) do scans.carry(Scans.Carried(index, own, lidar))
 
   private def made(vehicle: VehicleSettings): SimulatedVehicle =
     if vehicle.isCar then SimulatedCar(vehicle, settings.origin)
@@ -77,7 +77,7 @@ final class World(
     added.setWind(wind)
     moves += None
     present = present :+ added
-    equip(present.size - 1, vehicle.name)
+    equip(present.size - 1, vehicle)
 
   def now: Instant = clock
 

@@ -2,7 +2,7 @@ package skein.simulator
 
 import java.io.ByteArrayInputStream
 import javax.imageio.ImageIO
-import skein.airsim.WorldSettings
+import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.airsim.wire.*
 import skein.scene.SceneFile
 import skein.scene.render.Palette
@@ -84,6 +84,37 @@ class ImageSuite extends munit.FunSuite:
     assertEquals((0 until 64).map(image.getRGB(_, 16) & 0xffffff).distinct.size, 1)
     val info = bench.now[CameraInfo]("simGetCameraInfo", Str("nose"), Str("A"), Bool(false))
     assertEqualsFloat(info.fov, 60, 1e-3f)
+
+  test("each image type has its own field of view, until a client sets the camera's"):
+    val text  = """{"Vehicles": {"A": {"Cameras": {"front_center": {"CaptureSettings": [
+      {"ImageType": 0, "FOV_Degrees": 60}, {"ImageType": 1, "FOV_Degrees": 30}]}}}}}"""
+    val bench = Bench(Seq("A"), text = text)
+    def fovs  =
+      for kind <- Seq(ImageType.Scene, ImageType.DepthPlanar, ImageType.Segmentation)
+      yield (Shots.view(bench.simulation, 0, "front_center", kind.ordinal).fovDeg * 1000).round
+    bench.tell(
+      "simSetCameraPose",
+      Str("0"),
+      writeMsg(Pose(Vector3r(0, 0, 1), Quaternionr(1, 0, 0, 0))),
+      Str("A"),
+      Bool(false)
+    )
+    assertEquals(fovs, Seq(60_000L, 30_000L, 90_000L))
+    bench.tell("simSetCameraFov", Str("0"), Float32(45), Str("A"), Bool(false))
+    assertEquals(fovs, Seq(45_000L, 45_000L, 45_000L))
+
+  test("lidars of cars and cameras look ahead from above the vehicle, and those of multirotors down"):
+    val lidar =
+      """"DefaultSensors": {"L": {"SensorType": 6, "Enabled": true}, "D": {"SensorType": 5, "Enabled": true}}"""
+    val text  = s"""{"SimMode": "Car", $lidar, "Vehicles": {"A": {}, "B": {"VehicleType": "SimpleFlight"}}}"""
+    val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
+    val read  = SensorSettings.read(text).fold(error => fail(error.message), identity)
+    val added = VehicleSettings("C", vehicleType = "ComputerVision")
+    val seen  = (world.vehicles :+ added :+ VehicleSettings("D")).map: vehicle =>
+      val (lidar, ranger) = (read.lidar(vehicle, "L").get._2, read.ranger(vehicle, "").get)
+      (lidar.verticalFovDeg, lidar.place.position.z, ranger.place.position.z)
+    val (ahead, down) = (((-10.0, 10.0), -1.0, -1.0), ((-45.0, -15.0), 0.0, 0.0))
+    assertEquals(seen, Vector(ahead, down, ahead, down))
 
   test("equal poses give equal image bytes, whatever was drawn and flown before"):
     def digest(bench: Bench) =

@@ -141,7 +141,8 @@ class SettingsFileSuite extends munit.FunSuite:
         """{"RpcEnabled": false}"""  -> "RpcEnabled: expected true, found false",
         """{"SettingsVersion": 3}""" -> "SettingsVersion: expected a number from 1 to 2, found 3",
         """{"ClockSpeed": 1e9}"""    -> "ClockSpeed: expected a number from 0.001 to 1000, found 1000000000",
-        """{"Wind": {"Y": 1e6}}"""   -> "Wind.Y: expected a number from -1000 to 1000, found 1000000",
+        """{"Wind": {"Y": 1e6}}"""   -> "Wind: expected at most 300 m/s, found 1000000 m/s",
+        """{"Wind": {"X": 299, "Y": 30}}"""        -> "Wind: expected at most 300 m/s, found 301 m/s",
         """{"OriginGeopoint": {"Latitude": 91}}""" ->
           "OriginGeopoint.Latitude: expected a number from -90 to 90, found 91",
         """{"Vehicles": {"A": {"X": 1e8}}}""" ->

@@ -2,6 +2,7 @@ package skein.loop.learning
 
 import skein.policy.*
 import skein.signal.{NormalQuantile, SplitMix64}
+import skein.units.Span
 
 /** A network whose parameters change during a flight, between two decisions and never within one. It
   * explores: normal noise is added to its outputs, drawn from the seed and the decision's number. A
@@ -10,6 +11,7 @@ import skein.signal.{NormalQuantile, SplitMix64}
   * @param first decides until the first update
   * @param version makes a policy of other parameters
   * @param explore the noise's deviation, as a fraction of the largest action
+  * @param period time between two decisions
   * @param note called with all updates, and the number of the next decision
   */
 final class LearningPolicy(
@@ -18,11 +20,15 @@ final class LearningPolicy(
     explore: Double,
     seed: Long,
     lessons: Lessons,
+    period: Span,
     note: (Long, LearnerUpdate) => Unit
 ) extends Policy:
   import LearningPolicy.*
 
   @volatile private var newest = first
+
+  /** The last decision whose transition was given: a late call and the next have one number. */
+  @volatile private var taught = -1L
 
   type Memory = Option[Before]
 
@@ -42,14 +48,16 @@ final class LearningPolicy(
     val observed = first.space.observe(seen)
     val numbers  = observed.toVector
     memory match
-      // After a decision that something else made instead, the effect of its own decision is unknown.
-      case Some(Before(decision, before, shares)) if decision + 1 == seen.decisions =>
+      // After a decision that something else made instead, or a pause, the effect of its own is unknown.
+      case Some(Before(decision, usual, before, shares))
+          if decision + 1 == seen.decisions && decision > taught && seen.elapsed <= usual.max(period) * 2 =>
+        taught = decision
         lessons.flown(Transition(before, shares, numbers, distanceM(seen)))
       case _ => ()
     val random = SplitMix64(SplitMix64.seedOf(seed, seen.decisions))
     val policy = newest
     val shares = policy.shares(observed).map(share => (share + noise(random)).max(-1.0).min(1.0))
-    (policy.act(seen, shares), Some(Before(seen.decisions, numbers, shares.toVector)))
+    (policy.act(seen, shares), Some(Before(seen.decisions, seen.elapsed, numbers, shares.toVector)))
 
   private def noise(random: SplitMix64) =
     if explore == 0 then 0.0 else explore * NormalQuantile(random.nextDouble().max(Least))
@@ -62,5 +70,5 @@ final class LearningPolicy(
 object LearningPolicy:
   private val Least = 1e-12
 
-  /** The last decision: its observation, and its action. */
-  final case class Before(decision: Long, seen: Vector[Double], shares: Vector[Double])
+  /** The last decision: the time since the one before it, its observation, and its action. */
+  final case class Before(decision: Long, elapsed: Span, seen: Vector[Double], shares: Vector[Double])
