@@ -29,7 +29,8 @@ private[cli] object IdentifiedVehicles:
       wanted.nonEmpty && unknown.isEmpty,
       wanted,
       if all.isEmpty then "expected recordings with commands to vehicles, got none"
-      else if unknown.nonEmpty then s"--vehicle: expected one of ${listed(all)}, got ${unknown.mkString(", ")}"
+      else if unknown.nonEmpty then
+        s"--vehicle: expected one of ${listed(all)}, got ${unknown.mkString(", ")}"
       else s"expected vehicles commanded by velocities, got other actions of ${listed(without)}"
     )
 
