@@ -118,7 +118,7 @@ object Packaging {
       val exports = Seq("internal", "plugin").flatMap(part => Seq("--add-exports", s"jdk.jlink/jdk.tools.jlink.$part=ALL-UNNAMED"))
       run(
         home,
-        (java +: "-XX:+UseSerialGC" +: "--add-modules=jdk.jlink" +: exports) ++
+        (java +: "-XX:+UseSerialGC" +: "-XX:TieredStopAtLevel=1" +: "--add-modules=jdk.jlink" +: exports) ++
           (linker.getPath +: options) ++ Seq("--output", runtime.getPath): _*
       )
       IO.write(remembered, wanted)
@@ -140,17 +140,18 @@ object Packaging {
     notices.foreach(notice => IO.copyFile(notice, home / notice.getName))
 
     val classPath = jars.map(_.getPath).mkString(":")
+    val aot       = (lib / "skein.aot").getPath
     val program   = (runtime / "bin" / "java").getPath +: (Jvm.nativeAccess ++ vectors ++ Jvm.control) :+ "-cp" :+ classPath
     IO.withTemporaryDirectory { folder =>
-      val cache = program :+ s"-XX:AOTCacheOutput=${lib / "skein.aot"}"
+      val cache = program :+ s"-XX:AOTCacheOutput=$aot"
       // What a busy machine did not fly is slower to start, no more.
       val status = Process(cache :+ "skein.cli.Rehearsal" :+ (sources / "rehearsed").getPath, folder).!(log)
       if (status != 0) log.warn("not all commands of the rehearsal ended well")
-      if (!(lib / "skein.aot").exists) sys.error("the rehearsal made no ahead-of-time cache")
+      if (!file(aot).exists) sys.error("the rehearsal made no ahead-of-time cache")
     }
     for (words <- Seq("--version", "--help", "completion bash", "completion zsh")) {
       val answer = lib / "answers" / words.split("[ -]+").last
-      IO.write(answer, Process(program ++ ("skein.cli.Main" +: words.split(' ').toSeq)).!!(log))
+      IO.write(answer, Process(program ++ (s"-XX:AOTCache=$aot" +: "skein.cli.Main" +: words.split(' ').toSeq)).!!(log))
     }
     home
   }

@@ -15,6 +15,8 @@ from .places import plainly
 
 #: Environments that share a link, and so one draw of its delays.
 _GROUP = 128
+#: Different draws that environments know, of which each is one.
+_DRAWS = 128
 _REWARD_M = 10.0
 #: Quantiles of Student's distribution, two-sided 95 %, for 1 to 30 degrees of freedom.
 _T95 = (
@@ -121,16 +123,24 @@ def evaluate(
     finally:
         environments.close()
     scores = (total / count)[places].reshape(draws, -1, places.shape[1]).mean(1)
-    student = _T95[min(draws - 1, len(_T95)) - 1]
     frame = pd.DataFrame(
         {
             "mean m": scores.mean(0),
-            "± 95 %": student * scores.std(0, ddof=1) / np.sqrt(draws),
+            # Draws may be equal, and the known ones are a sample of the link themselves.
+            "± 95 %": _student95(draws - 1) * scores.std(0, ddof=1) * np.sqrt(1 / draws + 1 / _DRAWS),
             "episodes": len(places),
         }
     )
     frame.attrs.update(decisions=steps * asked.size, decisions_per_s=steps * asked.size / took_s, engine=engine)
     return frame
+
+
+def _student95(degrees: int) -> float:
+    """Student's 97.5 % quantile: the table's, above it by Abramowitz and Stegun, 26.7.5."""
+    if degrees <= len(_T95):
+        return _T95[degrees - 1]
+    z = 1.959964
+    return z + z * (z**2 + 1) / (4 * degrees) + z * (5 * z**4 + 16 * z**2 + 3) / (96 * degrees**2)
 
 
 def _layout(candidates: int, draws: int, seed: int) -> tuple[np.ndarray[Any, Any], list[int]]:

@@ -3,9 +3,9 @@ package skein.budget
 import skein.lanes.Engine
 import skein.optimise.LatencyBudget.Bound
 import skein.optimise.{LatencyBudget, RunningStats}
+import skein.search.SearchResult
 import skein.signal.LatencyDistribution
 import skein.units.Decimals.{fixed, signed, significant}
-import skein.units.Interval
 import upickle.default.{ReadWriter, macroRW, write}
 
 /** A map of one loop at one period, with its labels.
@@ -46,10 +46,10 @@ final case class BudgetMap(
     val (factor, offUnit)                = tolerance.shown(unit)
     val off                              = factor * (mark.tally.mean - budget.truth) / budget.per
     def told(text: String, unit: String) = s"$text $unit".trim
-    val value                            = Interval.of(mark.tally.mean, mark.tally.halfWidth95).text
     val came                             =
       if !off.isFinite then s"$objective has no value"
-      else s"$objective = ${told(value, unit)}, ${told(off.signed(1), offUnit)} off the truth"
+      else
+        s"$objective = ${SearchResult.interval(mark.tally, unit)}, ${told(off.signed(1), offUnit)} off the truth"
     val where = if isOnMap(mark) then ""
     else
       s"; not drawn: the map ends before it, at ${ms(budget.meansMs.last)} " +

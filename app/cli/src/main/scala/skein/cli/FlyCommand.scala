@@ -305,6 +305,9 @@ private[cli] object FlyCommand:
   /** Loops that this process has already warmed up: its next command can skip them. */
   @volatile private var warm = Set.empty[AnyLoop]
 
+  /** Lets live flights of this process begin without a warm-up. */
+  def skipWarmUp(): Unit = warm = LoopKind.values.toSet
+
   /** Checks before any warm-up that the simulator answers and has the scenario's vehicles. A MAVLink
     * simulator is checked when its vehicles move to their starts, which needs their clocks.
     */

@@ -73,7 +73,7 @@ object DeviationFigure:
     val centre  = Point(x, panel.atY(100 * share.mean))
     Vector(
       line(share.least, share.most, 1),
-      line(share.mean - share.sd, share.mean + share.sd, 3.2),
+      line(share.mean - share.sampleSd, share.mean + share.sampleSd, 3.2),
       Mark.Text(Point(x, panel.bottom + 13), deviation.name, Theme.smallSize, anchor = Anchor.Middle),
       Mark.Text(Point(x, panel.bottom + 24), percent, Theme.smallSize, Theme.tickColour, Anchor.Middle)
     ) ++ disc(centre, colour, isLive(deviation))

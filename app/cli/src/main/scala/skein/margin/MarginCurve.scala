@@ -52,10 +52,13 @@ final case class MarginCurve private (
     else (point.stats.mean - reference.stats.mean) / per
 
   /** Half width of the deviation's 95 % interval, from the spread of the runs at the point and at the
-    * reference.
+    * reference, to first order. If deviations are shares of the reference, its error counts by their ratio.
     */
   def halfWidth(point: MarginPoint): Double =
-    math.hypot(point.stats.halfWidth95, reference.stats.halfWidth95) / per
+    val ratio = tolerance match
+      case Tolerance.Share(_) => (point.stats.mean / reference.stats.mean).abs
+      case _                  => 1.0
+    math.hypot(point.stats.halfWidth95, ratio * reference.stats.halfWidth95) / per
 
   /** The mean round trip, ms, up to which the result stays within the tolerance, interpolated linearly. */
   def margin: Bound = holds((off, _) => off)
@@ -64,11 +67,15 @@ final case class MarginCurve private (
     * tolerance, to the first at which it must have.
     */
   def interval: (from: Bound, to: Bound) =
-    (from = holds((off, half) => off + half), to = holds((off, half) => (off - half).max(0)))
+    val (above, below) = (holds(_ + _), holds(_ - _))
+    (
+      from = if MarginCurve.endMs(above) < MarginCurve.endMs(below) then above else below,
+      to = holds((off, half) => off.sign * (off.abs - half).max(0))
+    )
 
   private def holds(off: (Double, Double) => Double): Bound =
     val known = points.filter(_.counts).map: point =>
-      (point.meanMs, off(deviation(point).abs, halfWidth(point)))
+      (point.meanMs, off(deviation(point), halfWidth(point)))
     LatencyBudget.holdsUpTo((0.0, 0.0) +: known, tolerance.value)
 
   def sentence: String =
@@ -103,6 +110,11 @@ object MarginCurve:
               "--within takes a difference instead"
           )
           .map(MarginCurve(judge, tolerance, reference, points.sortBy(_.meanMs), _))
+
+  private def endMs(bound: Bound): Double = bound match
+    case Bound.At(ms)    => ms
+    case Bound.Below(ms) => ms
+    case _               => Double.PositiveInfinity
 
   def text(bound: Bound): String = bound match
     case Bound.At(ms)     => s"${ms.fixed(0)} ms"

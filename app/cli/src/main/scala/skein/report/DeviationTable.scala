@@ -19,7 +19,7 @@ object DeviationTable:
           one.clock,
           one.share.count.toString,
           percent(one.share.mean),
-          if one.share.count == 1 then "" else (100 * one.share.sd).fixed(1),
+          if one.share.count == 1 then "" else (100 * one.share.sampleSd).fixed(1),
           percent(one.share.least),
           percent(one.share.most)
         )

@@ -111,7 +111,7 @@ object ScenarioTables:
     def two(value: Double) = value.fixed(2)
     Distribution.of(values).fold("")(all =>
       if all.count == 1 then two(all.mean)
-      else s"${two(all.mean)} ± ${two(all.sd)}, ${two(all.least)} … ${two(all.most)}"
+      else s"${two(all.mean)} ± ${two(all.sampleSd)}, ${two(all.least)} … ${two(all.most)}"
     )
 
   /** The text for an event that did not occur in the flight. */

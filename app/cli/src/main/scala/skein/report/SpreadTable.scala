@@ -41,7 +41,7 @@ object SpreadTable:
           group._2,
           mean.fold(groups(group).size)(_.count).toString,
           metres(mean, _.mean),
-          metres(mean.filter(_.count > 1), _.sd),
+          metres(mean.filter(_.count > 1), _.sampleSd),
           metres(mean, _.least),
           metres(mean, _.most),
           metres(within, _.mean),

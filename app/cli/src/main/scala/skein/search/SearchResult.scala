@@ -110,9 +110,12 @@ object SearchResult:
       baseline <- tally(Judge.Baseline, ready.baseline.candidate)
     yield Found(state, best, winner, baseline)
 
-  /** A mean with the half width of its 95 % interval. */
+  /** A mean with the half width of its 95 % interval, which equal values cannot give: all of 64 episodes may
+    * end in a capture, and one of the next 64 not.
+    */
   def interval(tally: RunningStats, unit: String): String =
-    s"${Interval.of(tally.mean, tally.halfWidth95).text} $unit".trim
+    if tally.count > 1 && tally.sd == 0 then s"${tally.mean.significant(4)} $unit".trim + " in each"
+    else s"${Interval.of(tally.mean, tally.halfWidth95).text} $unit".trim
 
   /** The last remarks of a policy file: the question that its policy answers, as it is stored, with its
     * conditions.
@@ -138,7 +141,7 @@ object SearchResult:
   ): String =
     s"""objective {
        |  formula = ${quoteString(text)}
-       |  # mean over fresh episodes; the true one lies within ± halfWidth95 with 95 % confidence
+       |  # mean over fresh episodes; the true one lies within ± halfWidth95 with 95 % confidence, unless it is 0
        |  mean = ${fresh.mean}
        |  halfWidth95 = ${fresh.halfWidth95}
        |  sd = ${fresh.sd}

@@ -16,17 +16,23 @@ object LearningCurve:
       scores: Seq[(String, Colour, Vector[LearnScore])],
       levels: Seq[(String, Colour, Double)]
   ): Drawing =
-    val all   = scores.flatMap(_._3)
+    val all = scores.flatMap(_._3)
+    // What is never negative has no band below 0.
+    val isPositive = all.forall(_.mean >= 0)
+    val least      =
+      if isPositive then levels.map(_._3).minOption.getOrElse(0.0).min(0)
+      else (all.map(score => score.mean - score.sd) ++ levels.map(_._3)).min.min(0)
     val panel = Panel(
       PlotAxis.around("steps of all environments, thousand", 0, all.map(_.steps / 1e3).max),
-      PlotAxis.around(value, 0, (all.map(score => score.mean + score.sd) ++ levels.map(_._3)).max),
+      PlotAxis.around(value, least, (all.map(score => score.mean + score.sd) ++ levels.map(_._3)).max.max(0)),
       left = 62,
       top = 52,
       width = 560,
       height = 300
     )
     def point(score: LearnScore, off: Double) =
-      panel.at(score.steps / 1e3, (score.mean + off * score.sd).max(0))
+      val value = score.mean + off * score.sd
+      panel.at(score.steps / 1e3, if isPositive then value.max(0) else value)
     val bands = scores.map: (_, colour, curve) =>
       val outline = curve.map(point(_, 1)) ++ curve.reverse.map(point(_, -1))
       Mark.Path(outline, None, Some(colour.faded(0.2)), closed = true)

@@ -189,7 +189,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
       Vector(Vector("paused", "none", "1"), Vector("stream", "none", "3"))
     )
     val streams = spread.rows.last
-    assertEquals(streams(column(spread, "closest m")), "2.17 ± 1.31, 1.00 … 4.00")
+    assertEquals(streams(column(spread, "closest m")), "2.17 ± 1.61, 1.00 … 4.00")
     assertEquals(streams(column(spread, "violations")), "2 in 2 flights")
     assertEquals(streams(column(spread, "to goal s")), "8.00 ± 0.00, 8.00 … 8.00, 1 never")
     assertEquals(spread.rows.map(_.size).distinct, Vector(spread.header.size))

@@ -1,5 +1,6 @@
 package skein.cluster
 
+import java.io.IOException
 import java.lang.management.ManagementFactory
 import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
@@ -56,12 +57,18 @@ final class WorkerProcesses(
     val again = synchronized:
       processes -= number
       !isClosing && (hasComputed || idle.incrementAndGet() <= MostIdle)
-    if again then begin(number)
-    else if synchronized(!isClosing && processes.isEmpty) then
-      onGivenUp(
-        "the workers on this machine end before they have computed anything, with " +
-          s"status ${process.exitValue}: see ${log(number)}"
-      )
+    val why =
+      if again then
+        try
+          begin(number)
+          None
+        catch case failure: IOException => Some(s"workers cannot be started again: ${failure.getMessage}")
+      else
+        Some(
+          "the workers on this machine end before they have computed anything, with " +
+            s"status ${process.exitValue}: see ${log(number)}"
+        )
+    if synchronized(!isClosing && processes.isEmpty) then why.foreach(onGivenUp)
 
   /** Ends all processes, and waits for them for a limited time. */
   def close(): Unit =
@@ -107,7 +114,7 @@ object WorkerProcesses:
   def endWithParent(end: () => Unit): Unit =
     val watching = Thread(() =>
       try while System.in.read() >= 0 do ()
-      catch case _: java.io.IOException => ()
+      catch case _: IOException => ()
       end()
     )
     watching.setDaemon(true)

@@ -85,13 +85,19 @@ object Track:
       isMeasured = true
     )
 
-  /** A track without measured velocities: the velocity at a sample is that of the straight line to the next.
+  /** A track without measured velocities: the velocity at a sample is that of the parabola through it and its
+    * neighbours; at both ends, of the straight line to the neighbour.
     */
   def ofPositions(vehicle: String, role: String, samples: Vector[(Instant, Vector3)]): Track =
     val ordered = samples.distinctBy(_._1).sortBy(_._1)
-    val moved   = ordered.zip(ordered.drop(1)).map { case ((from, start), (to, end)) =>
-      (end - start) * (1 / to.since(from).toSeconds)
+    val lines   = ordered.zip(ordered.drop(1)).map { case ((from, start), (to, end)) =>
+      val tookS = to.since(from).toSeconds
+      (tookS, (end - start) * (1 / tookS))
     }
-    val velocities = if moved.isEmpty then Vector(Vector3.Zero) else moved :+ moved.last
+    val within = lines.zip(lines.drop(1)).map { case ((beforeS, before), (afterS, after)) =>
+      (before * afterS + after * beforeS) * (1 / (beforeS + afterS))
+    }
+    val velocities =
+      if lines.isEmpty then Vector(Vector3.Zero) else lines.head._2 +: within :+ lines.last._2
     of(vehicle, role, ordered.zip(velocities).map { case ((at, place), velocity) => (at, place, velocity) })
       .copy(isMeasured = false)

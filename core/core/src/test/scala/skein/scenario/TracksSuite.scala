@@ -33,13 +33,18 @@ class TracksSuite extends munit.FunSuite:
     assertEquals((track.from, track.to), (s(1), s(1.4)))
     assert(track.isA(Role.Leader) && !track.isA(Role.Follower))
 
-  test("velocities that were not measured are those towards the next sample; the last equals the one before"):
+  test("velocities that were not measured are those of a parabola through three samples, at ends of a line"):
     val track = Track.ofPositions(
       "One",
       "Scout",
       Vector((s(0), Vector3.Zero), (s(2), Vector3(4, 0, 0)), (s(3), Vector3(4, 5, 0)))
     )
-    assertEquals(track.velocitiesNed, Vector(Vector3(2, 0, 0), Vector3(0, 5, 0), Vector3(0, 5, 0)))
+    assertEquals(track.velocitiesNed.head, Vector3(2, 0, 0))
+    assertEquals(track.velocitiesNed.last, Vector3(0, 5, 0))
+    assertEqualsDouble((track.velocitiesNed(1) - Vector3(2.0 / 3, 10.0 / 3, 0)).norm, 0, 1e-12)
+    val falling = Vector(0.0, 0.7, 1.0, 2.5, 3.0).map(t => (s(t), Vector3(0, 0, 4.9 * t * t)))
+    for (at, velocity) <- falling.map(_._1).zip(Track.ofPositions("One", "Scout", falling).velocitiesNed).slice(1, 4) do
+      assertEqualsDouble(velocity.z, 9.8 * at.since(s(0)).toSeconds, 1e-9)
     assertEquals(
       Track.ofPositions("One", "Scout", Vector((s(0), Vector3.Zero))).velocitiesNed,
       Vector(Vector3.Zero)

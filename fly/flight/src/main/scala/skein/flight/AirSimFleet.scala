@@ -85,7 +85,7 @@ private[flight] final class AirSimFleet(
       ports,
       Some(AirSimTime(clients.head)),
       address.toString,
-      () => clients.head.ping(),
+      () => clients.head.ping().map(_.isRight),
       custody.ask,
       cameras.flatten,
       films,

@@ -53,6 +53,8 @@ private[skein] final class CameraSensor(
   private val missed        = LongAdder()
   private val over          = Promise[Done]()
 
+  @volatile private var runs = false
+
   /** Completes after it was closed, once every requested image has a result or has failed. */
   def ended: Future[Done] = over.future
 
@@ -60,6 +62,7 @@ private[skein] final class CameraSensor(
 
   /** Requests images periodically until it is closed. */
   def run(): Unit =
+    runs = true
     val ticks = Source
       .fromGraph(Metronome(clock.now(), eye.every, clock))
       .via(stop.flow)
@@ -88,9 +91,10 @@ private[skein] final class CameraSensor(
     over.completeWith(end)
     end.failed.foreach(error => note(EventKind.Aborted, s"${eye.sensor}: $error"))
 
+  /** Requests no more images. Completes as [[ended]] does, so that the last results are recorded. */
   def close(): Future[Done] =
     stop.shutdown()
-    Future.successful(Done)
+    if runs then ended.recover { case _ => Done } else Future.successful(Done)
 
   /** The sensor that returns the present estimate. */
   val sensor: Sensor = new Sensor:

@@ -7,6 +7,7 @@ import skein.signal.ClockAlignment
 /** The vehicles of a flight, connected and at their starts.
   *
   * @param where the vehicles are, for a person
+  * @param ping whether the simulator answers now
   * @param isOther see [[SimulatorWatchdog]]
   * @param cameras the cameras with recognisers
   * @param films the vehicles' other cameras
@@ -18,7 +19,7 @@ private[flight] final case class ConnectedFleet(
     vehicles: Vector[VehiclePort],
     time: Option[SteppedTime],
     where: String,
-    ping: () => Future[Any],
+    ping: () => Future[Boolean],
     isOther: () => Future[Either[String, Option[String]]],
     cameras: Vector[CameraSensor] = Vector.empty,
     films: Vector[FilmedCamera] = Vector.empty,

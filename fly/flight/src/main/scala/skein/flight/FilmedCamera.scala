@@ -53,12 +53,13 @@ private[skein] final class FilmedCamera(
 
   def close(): Future[Done] =
     stop.shutdown()
-    tell(missed.getAndUpdate(_.copy(images = 0)))
-    if !hasSeen && lastWhy.nonEmpty then
-      val said = s"$camera: no image came: $lastWhy"
-      note(EventKind.Refused, said, Some(EventSubject.Camera))
-      imageless(said)
-    ended.get
+    ended.get.map: done =>
+      tell(missed.getAndUpdate(_.copy(images = 0)))
+      if !hasSeen && lastWhy.nonEmpty then
+        val said = s"$camera: no image came: $lastWhy"
+        note(EventKind.Refused, said, Some(EventSubject.Camera))
+        imageless(said)
+      done
 
   private def skipped(what: Frames.Skipped[Any, Any]): Unit =
     val (images, why) = what match

@@ -144,7 +144,7 @@ final class FlightAssembler(
               case Wire.AirSim => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
               case Wire.Mavlink => overMavlink(plan, server, opened, monitor)
         _ <- packets(plan, reached)
-        _ <- Team.missingSensor(fleet, reached.vehicles, settings.own).fold(reached.ping())(missing =>
+        _ <- Team.missingSensor(fleet, reached.vehicles, settings.own).fold(reached.ping().map(_ => ()))(missing =>
           Future.failed(CannotFly(missing))
         )
       yield
@@ -197,7 +197,7 @@ final class FlightAssembler(
           SimulatorWatchdog.within(settings.period, Asking.Timeout),
           reached.where,
           reached.isOther,
-          () => reached.ping().map { case Right(_) => true; case _ => false },
+          reached.ping,
           isShared,
           () => teams.flatMap(_.underDecision).minByOption(_.since),
           line => tell(s"${plan.id}: $line")
@@ -350,7 +350,7 @@ final class FlightAssembler(
         vehicles,
         None,
         at.toString,
-        () => Future.unit,
+        () => vehicles.head.read().map(_.isRight),
         () => Future.successful(Right(custody.check())),
         clocks = link.clocks
       )

@@ -2,7 +2,8 @@ package skein.flight
 
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
-import scala.concurrent.Future
+import scala.concurrent.{Future, Promise}
+import scala.util.Try
 import skein.policy.Action
 import skein.port.{Sensor, VehicleError, VehiclePort}
 import skein.signal.{
@@ -48,7 +49,7 @@ final class LinkedVehicle(
       def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] = over(sensor.read())
 
   private def called[A](call: => Future[A]): Future[A] =
-    there.pass.flatMap(_ => call).flatMap(answer => back.pass.map(_ => answer))
+    there.pass(call).flatMap(answer => back.pass(Future.successful(answer)))
 
   private def over[A](ask: => Future[Either[VehicleError, Stamped[A]]]) =
     val sentAt = clock.now()
@@ -62,10 +63,14 @@ final class LinkedVehicle(
       PacketLoss(latency, SplitMix64.seedOf(seed, 5), SplitMix64.seedOf(seed, 6 + number))
     private var newest = begun
 
-    def pass: Future[Unit] =
-      val in = synchronized:
+    /** Completes when everything before has passed: timers that expire in one moment have no order. */
+    private var last = Future.unit
+
+    def pass[A](call: => Future[A]): Future[A] =
+      val passed = Promise[Future[A]]()
+      synchronized:
         val now = clock.now()
         val at  = now.since(begun)
         newest = newest.max(now + loss.delay(at, timeout) + sampler.oneWay(at))
-        newest.since(now)
-      after(in.toDuration)(Future.unit)
+        last = last.zip(after(newest.since(now).toDuration)(Future.unit)).map(_ => passed.complete(Try(call)): Unit)
+      passed.future.flatten

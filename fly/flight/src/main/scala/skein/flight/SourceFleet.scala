@@ -39,7 +39,7 @@ private[flight] final class SourceFleet(
               open.vehicles,
               None,
               source.where,
-              () => Future.unit,
+              () => open.vehicles.head.read().map(_.isRight),
               () => Future.successful(Right(None)),
               clocks = open.clocks()
             )

@@ -10,9 +10,16 @@ final case class Distribution private (sorted: Vector[Double]):
   def p99: Double    = quantile(0.99)
 
   /** Standard deviation of the samples themselves: divided by their number, not by one less. */
-  def sd: Double =
+  def sd: Double = math.sqrt(squares / count)
+
+  /** Estimated standard deviation of what the samples are drawn from, such as flights with other seeds: divided
+    * by one less than their number. 0 for a single one.
+    */
+  def sampleSd: Double = if count == 1 then 0 else math.sqrt(squares / (count - 1))
+
+  private def squares: Double =
     val centre = mean
-    math.sqrt(sorted.iterator.map(value => (value - centre) * (value - centre)).sum / count)
+    sorted.iterator.map(value => (value - centre) * (value - centre)).sum
 
   /** The value that the share `p` of the samples does not exceed, on straight lines between samples. */
   def quantile(p: Double): Double =

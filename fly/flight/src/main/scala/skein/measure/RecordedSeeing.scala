@@ -11,7 +11,9 @@ import skein.units.*
   */
 object RecordedSeeing:
 
-  /** One result for each eye with a detection through a camera of its scenario. */
+  /** One result for each eye with a detection through a camera of its scenario. How many images an eye searched
+    * after its last detection is not recorded, so those do not count, nor does a flight without a detection.
+    */
   def of(recording: Recording)(using Scenarios): Vector[Seeing] =
     val summary = FlightSummary.of(recording)
     for
@@ -24,18 +26,25 @@ object RecordedSeeing:
     yield
       val across = StrictMath.tan(StrictMath.toRadians(camera.fovDeg) / 2)
       val upward = across * camera.height / camera.width
-      val own    = recording.readings.filter(_.vehicle == seen.eye.vehicle).map(_.state)
-      val inView = own.count: state =>
+      val last   = seen.detections.map(_.at).maxOption
+      val own    = recording.readings
+        .filter(_.vehicle == seen.eye.vehicle)
+        .map(_.state)
+        .filter(state => last.exists(state.validAt <= _))
+      val inViewM = own.flatMap: state =>
         val there =
           Placement(state.value.positionNed, state.value.orientation).inside(target.at(state.validAt))
-        there.x > 0 && math.abs(there.y) < across * there.x && math.abs(there.z) < upward * there.x
+        Option.when(
+          there.x > 0 && math.abs(there.y) < across * there.x && math.abs(there.z) < upward * there.x
+        )(there.norm)
       Seeing(
         seen.eye.every.toSeconds,
         StrictMath.toRadians(camera.fovDeg),
         seen.eye.workers,
         seen.eye.deadline.toSeconds,
         images,
-        inView.toDouble / own.size.max(1),
+        own.size,
+        inViewM,
         seen.detections.map: detection =>
           val there = Placement(detection.cameraNed, detection.orientation).inside(detection.trueNed)
           Detected(

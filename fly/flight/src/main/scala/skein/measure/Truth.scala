@@ -27,7 +27,7 @@ final class Truth private (paused: Map[Truth.Kind, Vector[FlightSummary]]):
     for
       truth <- found(flight, meansOfPlace, means) if truth != 0
       own   <- flight.headline
-    yield own / truth - 1
+    yield (own - truth) / truth.abs
 
 object Truth:
   /** The settings that a flight shares with its paused flights: scenario, policy, period, duration and the

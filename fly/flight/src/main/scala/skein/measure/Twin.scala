@@ -28,8 +28,11 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
       theirs <- Distribution.of(virtual.flatMap(_.headline))
     yield (ours, theirs.mean)
 
-  /** Deviation of the live flight's headline measure, as a fraction of the twins' measure. */
-  def difference: Option[Double] = converged.map((ours, theirs) => ours / theirs - 1)
+  /** Deviation of the live flight's headline measure, as a fraction of the size of the twins' measure; None if
+    * that is 0.
+    */
+  def difference: Option[Double] = converged.collect:
+    case (ours, theirs) if theirs != 0 => (ours - theirs) / theirs.abs
 
   def seeds: String =
     virtual.map(_.flight.seed).distinct.sorted match

@@ -70,7 +70,7 @@ object ModelFile:
          |  }""".stripMargin
     s"""# A model of how horizontal velocity follows its command, fitted by `skein identify`.
        |# least and most: 95 % intervals by the sandwich estimator over blocks of ${number(
-        Identification.BlockS
+        Identification.blockS(from.horizonS)
       )} s of flight.
        |skein.model {
        |  # Which of the structures below to fly by.

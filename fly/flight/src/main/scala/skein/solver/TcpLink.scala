@@ -59,11 +59,12 @@ final class TcpLink(
           hasHeard = true
           received(message.toArrayUnsafe()))(Keep.both)
         .run()
-      connected.foreach: _ =>
+      // In this order, also if the peer closes as soon as it has accepted.
+      val up = connected.map: _ =>
         queue.set(Some(out))
         news(LinkNews.Up)
         system.scheduler.scheduleOnce(answerWithin.toDuration)(unlessHeard(out)): Unit
-      ended.onComplete: result =>
+      up.transformWith(_ => ended).onComplete: result =>
         val wasUp = queue.getAndSet(None).isDefined
         completed(out)
         val ending = result match
@@ -110,8 +111,9 @@ final class TcpLink(
       case None      => Left(whyDown)
       case Some(out) =>
         out.offer(ByteString.fromArrayUnsafe(message)) match
-          case QueueOfferResult.Enqueued => Right(())
-          case _                         => Left(s"$MostWaiting messages to $to wait already")
+          case QueueOfferResult.Enqueued                                => Right(())
+          case QueueOfferResult.QueueClosed | QueueOfferResult.Failure(_) => Left(whyDown)
+          case QueueOfferResult.Dropped                                 => Left(s"$MostWaiting messages to $to wait already")
 
     /** Closes the link; messages already accepted are sent first, if the other side reads them in time. */
     def close(): Future[Done] =

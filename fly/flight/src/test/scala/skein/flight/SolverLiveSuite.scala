@@ -15,11 +15,11 @@ import skein.record.EventKind
 import skein.scenario.Scenarios
 import skein.settings.{RecordedPlan, SolverChoice}
 import skein.solver.*
-import skein.testing.Optimised
+import skein.testing.{Conclusive, Optimised}
 import skein.units.*
 
 /** A solver behind real sockets on loopback. */
-class SolverLiveSuite extends munit.FunSuite, Optimised:
+class SolverLiveSuite extends munit.FunSuite, Optimised, Conclusive:
   private given system: ActorSystem = ActorSystem("SolverLiveSuite")
   private given Scenarios           = Scenarios.ours
   import system.dispatcher
@@ -31,27 +31,28 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
     SolverServer.start(at, TcpTransport(), SolvedFlight.desk(id), Clock.system)
 
   test("a solver's plans arrive within the deadline, and replay"):
-    val server = Await.result(served(1, Address("127.0.0.1", 0)), 10.seconds)
-    val flight = SolvedFlight(
-      SolverChoice.Tcp(server.address),
-      TcpLink(TcpTransport(), server.address),
-      LoopKind.Plan,
-      duration = Span.ofSeconds(5),
-      changed = _.copy(
-        deadline = Some(Span.ofMillis(600)),
-        // A slice is searched in that time on a busy machine, too.
-        planning = PlanSettings(Span.ofMillis(200), horizonSteps = 10, searches = 1, blocksPerSlice = 1)
+    conclusive:
+      val server = Await.result(served(1, Address("127.0.0.1", 0)), 10.seconds)
+      val flight = SolvedFlight(
+        SolverChoice.Tcp(server.address),
+        TcpLink(TcpTransport(), server.address),
+        LoopKind.Plan,
+        duration = Span.ofSeconds(5),
+        changed = _.copy(
+          deadline = Some(Span.ofMillis(600)),
+          // A slice is searched in that time on a busy machine, too.
+          planning = PlanSettings(Span.ofMillis(200), horizonSteps = 10, searches = 1, blocksPerSlice = 1)
+        )
       )
-    )
-    val flown = flight.flown().flatMap(outcome => server.close().map(_ => outcome))
-    assertEquals(Await.result(flown, 60.seconds), FlightOutcome.Completed)
-    val recording = flight.recorder.recording
-    assert(recording.planned.sizeIs > 5, recording.planned.size)
-    assert(recording.planned.exists(_.candidates > 0))
-    for one <- recording.solved if one.vehicle == "Pursuer" do
-      assert(one.thinking >= flight.settings.planning.deadline, one)
-    val again = RecordedPlan.of(recording).fold(fail(_), identity)
-    assertEquals(Replay(again.fleet, recording, again.settings.loopSettings).firstDifference, None)
+      val flown = flight.flown().flatMap(outcome => server.close().map(_ => outcome))
+      assertEquals(Await.result(flown, 60.seconds), FlightOutcome.Completed)
+      val recording = flight.recorder.recording
+      assert(recording.planned.sizeIs > 5, recording.planned.size)
+      assert(recording.planned.exists(_.candidates > 0))
+      for one <- recording.solved if one.vehicle == "Pursuer" do
+        assert(one.thinking >= flight.settings.planning.deadline, one)
+      val again = RecordedPlan.of(recording).fold(fail(_), identity)
+      assertEquals(Replay(again.fleet, recording, again.settings.loopSettings).firstDifference, None)
 
   test(
     "a peer that accepts the connection and sends nothing is reported long before patience ends"

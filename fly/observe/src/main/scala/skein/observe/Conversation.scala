@@ -30,10 +30,12 @@ final class Conversation(connection: Int):
         Some(Passed.Answered(connection, id, failed, stampOf(result), answers.length, at))
       case _ => None
 
+  /** Whether a direction could not be parsed: the other alone would say which calls are awaited, or answered. */
+  private var isLost = false
+
   /** The parser of one direction of the connection. */
   private final class Side:
     private val framer = new Framer(FrameLimits.Listening, KeptBytes)
-    private var isLost = false
 
     def length: Long = framer.valueBytes
 

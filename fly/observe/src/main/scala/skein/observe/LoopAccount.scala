@@ -51,6 +51,11 @@ final class LoopAccount:
     case called: Passed.Called                     => tick(called.at); call(called)
     case answered: Passed.Answered                 => tick(answered.at); answer(answered)
     case Passed.Unreadable(connection, reason, at) =>
+      tick(at)
+      // Answers to them will not be seen.
+      for open <- connections.get(connection) do
+        open.pending.values.foreach(forget)
+        open.pending.clear()
       if lost.size < MostLost then lost += s"connection $connection: $reason"
     case Passed.Closed(connection, at) =>
       tick(at)

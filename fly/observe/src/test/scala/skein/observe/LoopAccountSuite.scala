@@ -43,6 +43,8 @@ class LoopAccountSuite extends munit.FunSuite:
 
     def takeNew(): Vector[NewCommands] = account.takeNew()
 
+    def unreadable(connection: Int, ms: Double): Unit =
+      account.add(Passed.Unreadable(connection, "no message", at(ms)))
     def closed(ms: Double): Unit = account.add(Passed.Closed(0, at(ms)))
     def observed: Observed       = account.observed
     def found: Set[String]       = Diagnosis.of(observed).map(_.name).toSet
@@ -55,6 +57,16 @@ class LoopAccountSuite extends munit.FunSuite:
     program.answer(hovers, 102)
     program.answer(moved, 104)
     assertEquals(program.vehicle("A").overtaken, 0L)
+
+  test("a call whose answer can no longer be read is not awaited for ever"):
+    val program = Program()
+    program.call("simGetImages", "A", 0, connection = 1): Unit
+    program.unreadable(1, 20)
+    program.called("getMultirotorState", "A", 30, 40, Some(30))
+    program.move("A", 50): Unit
+    program.called("getMultirotorState", "A", 1000, 1010, Some(1000))
+    program.move("A", 1050): Unit
+    assertEquals(program.observed.periodMs.getOrElse("images", 0.0), 0.0)
 
   test("each command is logged with what was known when it passed"):
     val program = Program()

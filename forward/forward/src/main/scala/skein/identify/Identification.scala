@@ -35,14 +35,19 @@ final case class Identification(
   * that part is simulated from the earlier samples.
   *
   * Errors within one stretch of flight are correlated. Therefore the intervals come from the Jacobian with
-  * the sandwich estimator over blocks of [[Identification.BlockS]] of one vehicle (Liang, Zeger, Biometrika
+  * the sandwich estimator over blocks of [[Identification.blockS]] of one vehicle (Liang, Zeger, Biometrika
   * 73 (1986)), which is the first-order form of a bootstrap over such blocks. They cover random errors, but
   * no bias of the arrival times, which adds to the dead time in full.
   */
 object Identification:
   val StartEveryS     = 0.5
-  val BlockS          = 5.0
   val DefaultHorizonS = 2.0
+
+  /** Length of a block, s: 5, or two and a half horizons. Errors of windows less than a horizon apart are those
+    * of common samples, so shorter blocks would make intervals too narrow: with blocks of one horizon by a
+    * fifth.
+    */
+  def blockS(horizonS: Double): Double = (2.5 * horizonS).max(5)
 
   /** Fits a structure. Left says what the flights lack. */
   def of(
@@ -54,12 +59,12 @@ object Identification:
       for
         (flown, number) <- flights.zipWithIndex
         from            <- flown.starts(StartEveryS, horizonS)
-      yield Window(flown, from, horizonS, (number, (flown.samples(from).atS / BlockS).floor.toLong))
+      yield Window(flown, from, horizonS, (number, (flown.samples(from).atS / blockS(horizonS)).floor.toLong))
     val blocks = windows.map(_.block).distinct
     if blocks.sizeIs < 2 * structure.space.dimension then
       val usableS = flights.map(flown => (flown.spanS - horizonS).max(0)).sum
       Left(
-        s"expected at least ${(2 * structure.space.dimension * BlockS).fixed(0)} s of flight to identify ${structure.label}, " +
+        s"expected at least ${(2 * structure.space.dimension * blockS(horizonS)).fixed(0)} s of flight to identify ${structure.label}, " +
           s"without the last ${horizonS.brief} s of each stretch, from which no whole horizon can be predicted; " +
           s"got ${usableS.fixed(0)} s"
       )

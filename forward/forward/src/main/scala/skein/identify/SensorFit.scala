@@ -16,8 +16,10 @@ final case class Detected(bearingErrorRad: Double, rangeM: Double, trueRangeM: D
   *
   * @param everyS requested time between images
   * @param fovRad horizontal field of view
-  * @param images number of images that were searched
-  * @param inView share of the flight in which the target was in view, according to both true positions
+  * @param images number of images that were searched, up to the last detection
+  * @param readings number of the vehicle's own readings in that time
+  * @param inViewM range of the target at each of them at which it was in the camera's view, according to both
+  *   true positions, m
   */
 final case class Seeing(
     everyS: Double,
@@ -25,7 +27,8 @@ final case class Seeing(
     workers: Int,
     deadlineS: Double,
     images: Int,
-    inView: Double,
+    readings: Int,
+    inViewM: Vector[Double],
     detections: Vector[Detected]
 )
 
@@ -55,13 +58,17 @@ object SensorFit:
     val ratios   = all.map(one => one.rangeM / one.trueRangeM)
     val bias     = ratios.sum / n
     val rangeSd  = math.sqrt(ratios.map(ratio => (ratio - bias) * (ratio - bias)).sum / (n - 1)) / bias
-    val inView   = seeing.map(one => one.images * one.inView).sum
+    // The model detects nothing beyond the farthest detection.
+    val farthest = all.map(_.trueRangeM).max
+    val inView   = seeing.map: one =>
+      one.images * one.inViewM.count(_ <= farthest).toDouble / one.readings.max(1)
+    .sum
     val detected = if inView > 0 then (n / inView).min(1) else 1.0
     val one      = seeing.head
     val model    = SensorModel(
       one.everyS,
       one.fovRad,
-      all.map(_.trueRangeM).max,
+      farthest,
       detected,
       bearing,
       bias,

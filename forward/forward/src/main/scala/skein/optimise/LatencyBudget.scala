@@ -34,7 +34,7 @@ final case class LatencyBudget(
     * @param tolerance maximum magnitude of [[deviation]], for example 0.05
     */
   def holdsUpTo(jitter: Int, tolerance: Double): LatencyBudget.Bound = LatencyBudget.holdsUpTo(
-    meansMs.indices.flatMap(mean => deviation(jitter, mean).map(meansMs(mean) -> _.abs)).toVector,
+    meansMs.indices.flatMap(mean => deviation(jitter, mean).map(meansMs(mean) -> _)).toVector,
     tolerance
   )
 
@@ -51,20 +51,20 @@ object LatencyBudget:
 
     case Unknown
 
-  /** The mean latency up to which deviations stay within a tolerance, by linear interpolation.
+  /** The mean latency up to which deviations stay within a tolerance to either side, by linear interpolation.
     *
-    * @param known mean latencies, ms, ascending, each with the magnitude of its deviation, which is infinite
-    *   or NaN if there is no value
+    * @param known mean latencies, ms, ascending, each with its deviation, which is infinite or NaN if there is
+    *   no value
     */
   def holdsUpTo(known: Vector[(Double, Double)], tolerance: Double): Bound =
-    known.indexWhere((_, off) => !(off <= tolerance)) match
+    known.indexWhere((_, off) => !(off.abs <= tolerance)) match
       case -1 if known.isEmpty => Bound.Unknown
       case -1                  => Bound.Beyond(known.last._1)
       case 0                   => Bound.Below(known.head._1)
       case first               =>
         val ((fromMs, fromOff), (toMs, toOff)) = (known(first - 1), known(first))
         if !toOff.isFinite then Bound.At(fromMs)
-        else Bound.At(fromMs + (toMs - fromMs) * (tolerance - fromOff) / (toOff - fromOff))
+        else Bound.At(fromMs + (toMs - fromMs) * (toOff.sign * tolerance - fromOff) / (toOff - fromOff))
 
   /** The link of a cell. Round trips are log-normal with this mean and jitter; without jitter they are
     * constant.

@@ -15,7 +15,9 @@ class SensorFitSuite extends munit.FunSuite:
     workers = 2,
     deadlineS = 0.3,
     images = 1000,
-    inView = 0.8,
+    readings = 1000,
+    // In view for 80 % of the time, and for another 15 % beyond what it detects.
+    inViewM = Vector.fill(800)(5.0) ++ Vector.fill(150)(40.0),
     Vector.fill(detections):
       val range = 5 + 10 * random.nextDouble()
       Detected(normal(0.004), range * (1.05 + normal(0.08)), range, 15 + 105 * random.nextDouble())

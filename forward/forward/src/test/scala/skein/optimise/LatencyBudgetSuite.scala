@@ -30,6 +30,11 @@ class LatencyBudgetSuite extends munit.FunSuite:
       case Bound.At(meanMs) => assertEqualsDouble(meanMs, 30, 1e-9)
       case other            => fail(s"$other")
 
+  test("from more to less than the truth, the bound lies where the line leaves on the other side"):
+    budget(Vector(Some(10.0), Some(10.4), Some(8.0), None)).holdsUpTo(0, 0.05) match
+      case Bound.At(meanMs) => assertEqualsDouble(meanMs, 20 + 20 * 0.9 / 2.4, 1e-9)
+      case other            => fail(s"$other")
+
   test("a bound before the first cell, or without any cell, is reported as such"):
     assertEquals(budget(Vector(None, Some(8.0), Some(10.0), None)).holdsUpTo(0, 0.05), Bound.Below(20))
     assertEquals(budget(Vector.fill(4)(None)).holdsUpTo(0, 0.05), Bound.Unknown)

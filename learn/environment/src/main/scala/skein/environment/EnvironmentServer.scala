@@ -2,7 +2,7 @@ package skein.environment
 
 import java.io.{DataInputStream, DataOutputStream, EOFException, IOException}
 import java.net.{StandardProtocolFamily, UnixDomainSocketAddress}
-import java.nio.channels.{Channels, FileChannel, ServerSocketChannel, SocketChannel}
+import java.nio.channels.{Channels, ClosedChannelException, FileChannel, ServerSocketChannel, SocketChannel}
 import java.nio.file.{Files, Path, StandardOpenOption}
 import java.nio.file.attribute.PosixFilePermissions
 import scala.jdk.CollectionConverters.*
@@ -27,13 +27,21 @@ import skein.units.Expect
   */
 object EnvironmentServer:
   private val MostText = 1 << 16
+  private val RetryMs  = 100
 
   def main(arguments: Array[String]): Unit = arguments match
     case Array(path) =>
       val server = ServerSocketChannel.open(StandardProtocolFamily.UNIX)
       server.bind(UnixDomainSocketAddress.of(path)): Unit
       Files.setPosixFilePermissions(Path.of(path), PosixFilePermissions.fromString("rw-------")): Unit
-      daemon(() => while true do accept(server))
+      daemon: () =>
+        while server.isOpen do
+          try accept(server)
+          catch
+            case _: ClosedChannelException => ()
+            case failure: IOException      => // Too many open files, for example: later there may be fewer.
+              Console.err.println(s"environments: no connection could be accepted: ${failure.getMessage}")
+              Thread.sleep(RetryMs)
       println("ready")
       while System.in.read() >= 0 do ()
       server.close()

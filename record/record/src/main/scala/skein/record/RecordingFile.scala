@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import java.sql.{DriverManager, SQLException}
 import java.util.Properties
 import org.duckdb.DuckDBConnection
-import scala.util.Using
+import scala.util.{Try, Using}
 import skein.units.Expect
 
 /** A recording's database while it is written. For one thread at a time. */
@@ -64,19 +64,29 @@ private[record] object RecordingFile:
     */
   def create(file: Path, heading: RecordingHeader): Either[RecordError, RecordingFile] =
     free(file).flatMap: _ =>
-      attempt(RecordError.CannotCreate(file, _)):
+      val begun = attempt(RecordError.CannotCreate(file, _)):
         val connection = connect(file, readOnly = false)
-        createTables(connection)
-        // A kill of the process loses nothing that the operating system has: no commit waits for the disk.
-        execute(connection, "SET fsync_mode = 'NONE'")
-        // Appending leaves nothing to optimise, and each batch would be planned again.
-        execute(connection, "SET enable_optimizer = false")
-        RecordingFile(file, connection)
+        try
+          createTables(connection)
+          // A kill of the process loses nothing that the operating system has: no commit waits for the disk.
+          execute(connection, "SET fsync_mode = 'NONE'")
+          // Appending leaves nothing to optimise, and each batch would be planned again.
+          execute(connection, "SET enable_optimizer = false")
+          RecordingFile(file, connection)
+        catch
+          case failure: SQLException =>
+            val _ = Try(connection.close())
+            throw failure
       .flatMap: opened =>
-        val begun = opened.write(heading.records)
-        if begun.isLeft then
+        val written = opened.write(heading.records)
+        if written.isLeft then
           val _ = opened.close()
-        begun.map(_ => opened)
+        written.map(_ => opened)
+      // What was begun on a full disk would prevent the next attempt.
+      if begun.isLeft then
+        for ending <- Seq("", ".wal") do
+          val _ = Try(Files.deleteIfExists(file.resolveSibling(s"${file.getFileName}$ending")))
+      begun
 
   /** Checks whether a recording can have this name; Left says why it cannot. */
   def free(file: Path): Either[RecordError, Unit] =

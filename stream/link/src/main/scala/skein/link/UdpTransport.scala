@@ -108,7 +108,9 @@ final class UdpSocket private (
       heardNs = System.nanoTime()
       if queue.offer(bytes) != QueueOfferResult.Enqueued then dropped.increment()
 
-    def end(): Unit = if !queue.isCompleted then queue.complete()
+    /** Another thread may end the stream meanwhile, and completing its queue then throws. */
+    def end(): Unit =
+      val _ = Try(if !queue.isCompleted then queue.complete())
 
     val flow: Flow[ByteString, ByteString, NotUsed] =
       Flow.fromSinkAndSourceCoupled(

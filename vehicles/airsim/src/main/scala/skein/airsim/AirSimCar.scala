@@ -75,8 +75,8 @@ final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTr
 
   /** Replaces the car's controls. The action before ends once the new controls have arrived. */
   private def replace(next: Promise[Answer], controls: CarControls)(arrived: Unit => Unit): Unit =
-    val before = underWay.getAndSet(next)
-    car.setControls(controls).foreach:
+    val (before, taken) = synchronized((underWay.getAndSet(next), car.setControls(controls)))
+    taken.foreach:
       case Right(()) =>
         before.trySuccess(Right(false))
         arrived(())
@@ -84,6 +84,7 @@ final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTr
         before.trySuccess(Left(errorOf(error)))
         next.trySuccess(Left(errorOf(error))): Unit
 
-  private def expire(ended: Promise[Answer]): Unit =
+  /** Stops the car, unless a newer action has been sent. */
+  private def expire(ended: Promise[Answer]): Unit = synchronized:
     if (underWay.get eq ended) && ended.trySuccess(Right(true)) then
       car.setControls(CarControls.Stop): Unit

@@ -8,6 +8,7 @@ import org.apache.pekko.stream.{BoundedSourceQueue, QueueOfferResult}
 import org.apache.pekko.util.ByteString
 import scala.collection.concurrent.TrieMap
 import scala.concurrent.{Future, Promise}
+import scala.util.Try
 import skein.mavlink.*
 import skein.port.VehicleError
 import skein.signal.ClockAlignment
@@ -128,8 +129,9 @@ final class MavlinkLink private (
     */
   def close(): Future[Done] =
     ticking.cancel()
-    queue.complete()
     isClosed = true
+    // Completing a queue whose stream has ended throws.
+    val _ = Try(queue.complete())
     end(Closed)
     Future.successful(Done)
 

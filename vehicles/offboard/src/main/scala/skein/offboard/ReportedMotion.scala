@@ -44,7 +44,11 @@ final case class ReportedMotion(
     case _ => (this, false)
 
   private def withNewest(state: Kinematics, at: Instant): (ReportedMotion, Boolean) =
-    if state.isFinite && newest.forall(at > _.at) then (copy(newest = Some((state = state, at = at))), true)
+    def isLater(last: Instant) = at > last || last.since(at) > Restart
+    if state.isFinite && newest.forall(one => isLater(one.at)) then (copy(newest = Some((state = state, at = at))), true)
     else (this, false)
+
+/** Messages do not overtake by so much: a vehicle's clock that is set back by more has begun anew. */
+private val Restart = Span.ofSeconds(1)
 
 private val LocalNed = 1

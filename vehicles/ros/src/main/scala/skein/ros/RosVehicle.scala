@@ -124,10 +124,10 @@ final class RosVehicle private[ros] (
         tick()
     )
 
-  /** Lets the vehicle hover, and ends every unanswered call. */
+  /** Lets a vehicle that was commanded hover, and ends every unanswered call. */
   private[ros] def close(): Unit =
     ticking.cancel(): Unit
-    hover(): Unit
+    if synchronized(hasFlown) then hover(): Unit
     synchronized:
       waiting.foreach(_.trySuccess(Left(VehicleError.Cancelled(s"$name: the node was closed"))))
       waiting = Vector.empty

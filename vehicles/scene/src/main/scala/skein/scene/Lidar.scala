@@ -58,12 +58,12 @@ final case class Lidar(
     *
     * @param except the item that the vehicle is
     * @param origin origin of the points' frame in the world; unused if points are in the sensor's own frame
-    * @param count index of the scan: selects its noise
+    * @param noise number of the scan, which selects its noise
     */
-  def scan(moment: Moment, vehicle: Placement, except: Int, origin: Vector3, count: Long): Lidar.Points =
+  def scan(moment: Moment, vehicle: Placement, except: Int, origin: Vector3, noise: Long): Lidar.Points =
     val sensor = vehicle.outside(place)
     val rays   = Rays(moment, sensor.position, rangeM, except)
-    val random = SplitMix64(SplitMix64.seedOf(seed, count))
+    val random = SplitMix64(SplitMix64.seedOf(seed, noise))
     val xyz    = new Array[Float](directions.length)
     val items  = new Array[Int](directions.length / 3)
     var found  = 0

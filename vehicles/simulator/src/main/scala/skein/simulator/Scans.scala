@@ -40,11 +40,13 @@ private[simulator] object Scans:
 
 /** A scan that has been taken: everything from which its points are computed, once.
   *
+  * @param noise selects the noise, which differs between vehicles, lidars and scans
   * @param origin origin of the vehicle's own frame in the world
   */
 final private[simulator] class Scan(
     val at: Instant,
     val count: Long,
+    noise: Long,
     lidar: Lidar,
     vehicle: Int,
     place: Placement,
@@ -54,7 +56,7 @@ final private[simulator] class Scan(
 ):
   private lazy val points: Lidar.Points =
     val moment = Moment(scene, vehicles)
-    lidar.scan(moment, place, moment.itemOf(vehicle), origin, count)
+    lidar.scan(moment, place, moment.itemOf(vehicle), origin, noise)
 
   /** @param idOf the items' segmentation ids
     */

@@ -4,6 +4,7 @@ import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.scene.{Bodies, Lidar, Placement, Scene}
+import skein.signal.SplitMix64
 import skein.units.*
 import skein.vehicle.{PathFollowing, RotorcraftKind}
 
@@ -195,6 +196,7 @@ final class World(
     Scan(
       at,
       count,
+      SplitMix64.seedOf(SplitMix64.seedOf(vehicle, carried.name.hashCode), count),
       carried.lidar,
       vehicle,
       placeOf(vehicle, at),

@@ -16,9 +16,9 @@ import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
 /** The views of many worlds under the {@code stream} loop, over links on which few views are regular, such as
- * those that lose packets, or where readings may be missing. They are equal to those of {@link LaneViews}, in equal rounds, but computed with
- * SIMD, period by period, as far ahead as the next view of each world needs. The scalar reference is {@code
- * skein.forward.JoiningRun}.
+ * those that lose packets, or where readings may be missing. They are equal to those of {@link LaneViews}, in
+ * equal rounds, but computed with SIMD, period by period, as far ahead as the next view of each world needs.
+ * The scalar reference is {@code skein.forward.JoiningRun}.
  */
 final class JoinedViews {
   private static final int WORLDS = LaneOffers.WORLDS, NONE = LaneOffers.NONE;

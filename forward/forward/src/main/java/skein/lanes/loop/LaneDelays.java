@@ -279,7 +279,7 @@ final class LaneDelays {
         most = IntVector.fromArray(INTS, mostTries, i),
         wait = IntVector.fromArray(INTS, timeout, i),
         value = IntVector.fromArray(INTS, values, i);
-    VectorMask<Integer> lost = drawn.and(LOW_BITS).compare(LT, threshold);
+    VectorMask<Integer> lost = drawn.and(LOW_BITS).compare(LT, threshold).and(most.compare(GT, 0));
     for (int tries = 1; lost.anyTrue(); tries++) {
       value = value.add(wait, lost);
       wait = wait.add(wait);

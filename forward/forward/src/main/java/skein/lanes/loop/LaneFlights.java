@@ -56,11 +56,18 @@ public abstract class LaneFlights extends LaneVehicles {
 
   /** @param numbers number of floats per piece and world
    * @param pieceS duration of a piece without a command, s, at most {@link #MOST_PIECE_S}
+   * @param deadTimeS time from the arrival of a command until its piece begins, s
    */
-  LaneFlights(RolloutAgent agent, int numbers, double pieceS, LoopLanes loop, boolean inSpace) {
+  LaneFlights(
+      RolloutAgent agent,
+      int numbers,
+      double pieceS,
+      double deadTimeS,
+      LoopLanes loop,
+      boolean inSpace) {
     super(agent, 0, inSpace);
     size = numbers * WORLDS;
-    keptRows = loop.keptRows();
+    keptRows = loop.keptRows() + (int) Math.ceil(deadTimeS / loop.periodS());
     periodGrains = LaneViews.grains(loop.periodS());
     pieceGrains = LaneViews.grains(pieceS);
     begins = new int[slots * WORLDS];

@@ -109,7 +109,7 @@ public abstract class LaneVehicles {
    * @param vehicle index of these vehicles
    */
   final void seed(int[] worldKeys, int vehicle) {
-    if (sensors != null) sensors.start(Arrays.stream(worldKeys).asLongStream().toArray(), vehicle);
+    if (sensors != null) sensors.start(Arrays.stream(worldKeys).asLongStream().toArray(), vehicle, false);
   }
 
   /** Reads the vehicles as {@link #read} does, with the errors of their sensors. */
@@ -132,6 +132,13 @@ public abstract class LaneVehicles {
 
   private void sense(int from, int to, boolean withVelocity) {
     sensors.at(sensedNs, from, to);
+    // The reading has the errors of the one before.
+    if (inSpace && !climbs())
+      for (int i = from; i < to; i++)
+        if (sensedNs[i] >= 0) {
+          state[SEEN_Z + i] = startZ[i];
+          state[SEEN_VZ + i] = 0f;
+        }
     sensors.add(LaneSensors.NORTH, sensedNs, from, to, state, SEEN_X);
     sensors.add(LaneSensors.EAST, sensedNs, from, to, state, SEEN_Y);
     if (inSpace) sensors.add(LaneSensors.DOWN, sensedNs, from, to, state, SEEN_Z);
@@ -140,6 +147,11 @@ public abstract class LaneVehicles {
     sensors.add(LaneSensors.NORTH_MPS, sensedNs, from, to, state, SEEN_VX);
     sensors.add(LaneSensors.EAST_MPS, sensedNs, from, to, state, SEEN_VY);
     if (inSpace) sensors.add(LaneSensors.DOWN_MPS, sensedNs, from, to, state, SEEN_VZ);
+  }
+
+  /** Whether the vehicles' plant has a vertical part. */
+  boolean climbs() {
+    return inSpace;
   }
 
   /** Simulates up to a period's start.

@@ -41,7 +41,13 @@ public final class PlantFlights extends LaneFlights {
 
   /** @param inSpace whether commands and readings have a vertical part, even if the plant has none */
   public PlantFlights(RolloutAgent agent, PlantLanes lanes, LoopLanes loop, boolean inSpace) {
-    super(agent, lanes.pieces().kept(), lanes.plant().stepS(), loop, inSpace);
+    super(
+        agent,
+        lanes.pieces().kept(),
+        lanes.plant().stepS(),
+        lanes.plant().deadTimeS(),
+        loop,
+        inSpace);
     climbs = lanes.inSpace();
     PlantPieces pieces = lanes.pieces();
     this.lanes = lanes;
@@ -65,10 +71,15 @@ public final class PlantFlights extends LaneFlights {
   }
 
   @Override
+  boolean climbs() {
+    return climbs;
+  }
+
+  @Override
   void rest(float[] pieces) {
     if (climbs) lanes.restInSpace(pieces, firstOfState, startZ);
     else lanes.rest(pieces, firstOfState);
-    Arrays.fill(pieces, ALONG_X, ALONG_X + WORLDS, Float.NaN);
+    Arrays.fill(pieces, ALONG_X, ALONG_X + WORLDS, PlantPieces.Rests());
     for (int axis = 0; axis < 2; axis++)
       for (int world = 0; world < WORLDS; world++)
         pieces[starts[axis] * WORLDS + world] += state[(axis == 0 ? X : Y) + world];

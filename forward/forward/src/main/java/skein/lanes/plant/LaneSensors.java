@@ -48,7 +48,7 @@ public final class LaneSensors {
 
   private int ticks;
 
-  /** Whether all worlds have one seed; then their errors are computed once. */
+  /** Whether all worlds have one seed and equal times; then their errors are computed once. */
   private boolean areOne;
 
   // Of the present readings, by world: the mixed time; the tick before, and the time since, in ticks.
@@ -74,9 +74,10 @@ public final class LaneSensors {
    *
    * @param seeds of the worlds' errors
    * @param vehicle index of the vehicle
+   * @param simultaneous whether readings are made simultaneously in all worlds
    */
-  public void start(long[] seeds, int vehicle) {
-    areOne = Arrays.stream(seeds).allMatch(seed -> seed == seeds[0]);
+  public void start(long[] seeds, int vehicle, boolean simultaneous) {
+    areOne = simultaneous && Arrays.stream(seeds).allMatch(seed -> seed == seeds[0]);
     for (int world = 0; world < (areOne ? LONGS.length() : WORLDS); world++) {
       long seed = SplitMix64.seedOf(seeds[world], vehicle);
       for (int axis = 0; axis < AXES; axis++) {

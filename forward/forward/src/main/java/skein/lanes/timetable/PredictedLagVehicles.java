@@ -42,6 +42,10 @@ public final class PredictedLagVehicles extends PredictedVehicles {
       keep(seenVx, kept, reading, into);
       keep(seenVy, kept, reading, into);
     }
+    if (read.seenZ.length > 0) {
+      System.arraycopy(read.seenZ, reading, read.seenZ, into, worlds);
+      System.arraycopy(read.seenVz, reading, read.seenVz, into, worlds);
+    }
     int[] commands = propagation.commands();
     float[] numbers = propagation.numbers();
     for (int part = 0; part < commands.length; part++) {

@@ -105,7 +105,7 @@ public abstract class TimetableVehicles extends TimetableReadings {
    * @param vehicle index of these vehicles
    */
   public final void seed(long[] seeds, int vehicle) {
-    if (sensors != null) sensors.start(seeds, vehicle);
+    if (sensors != null) sensors.start(seeds, vehicle, true);
   }
 
   /** Adds the errors of a reading.

@@ -21,7 +21,8 @@ private[lanes] final class ViewSource private (
   import ViewSource.Never
 
   private val periodNs = Nanos.of(timing.periodS)
-  private val endNs    = Nanos.of(durationS)
+  // As many whole periods as the scalar engine's.
+  private val endNs    = (durationS / timing.periodS).round * periodNs
   private var isJoined = false
 
   /** When the present view was joined, ns; [[ViewSource.Never]] if the flight ends before. */

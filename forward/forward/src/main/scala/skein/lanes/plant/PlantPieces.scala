@@ -7,7 +7,8 @@ import skein.vehicle.PlantTiming
 /** A plant's motion during one step, in worlds whose steps begin at different times. Compiled once for all
   * plants of a form. The stored components of a step are: the command north and east, divided by the speed,
   * and in space its vertical part; the state at the start of the step; and the vehicle's start, unless the
-  * state contains it. A command of NaN makes a vehicle rest.
+  * state contains it. A command of −∞ north makes a vehicle rest; one
+  * of NaN makes its state NaN, as in the scalar engine.
   *
   * @param places indices of the state's components that initially equal the vehicle's start, north and east;
   *   None if there are none
@@ -29,7 +30,8 @@ private[lanes] final class PlantPieces(
     val (since, stepS) = (trace.input(Since), trace.param(0))
     val north          = trace.input(North)
     // A plant's step must not be 0 s; the result of this step is not used.
-    val flies = trace.and(trace.lt(trace.const(0), since), trace.equal(north, north))
+    val rests = trace.equal(north, trace.const(Rests.toDouble))
+    val flies = trace.lt(trace.const(0), trace.where(rests, trace.const(0), since))
     PlantExpressions(
       trace,
       stepping,
@@ -73,6 +75,9 @@ private[lanes] object PlantPieces:
   /** Inputs of the expressions: the stored components, by row, and the time since the start of the step, s.
     */
   val North: Int = 0
+
+  /** The command north of a vehicle that rests. */
+  val Rests: Float = Float.NegativeInfinity
   val East: Int  = 1
   val Third: Int = 2
   val Holds: Int = 3

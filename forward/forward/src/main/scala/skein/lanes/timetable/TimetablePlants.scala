@@ -33,16 +33,21 @@ private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLane
     if isCommanded then
       flight.flyTo(times, at)
       if lanes.inSpace then flight.lookInSpace(seenX, seenY, seenVx, seenVy, seenZ, seenVz, into)
-      else flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
+      else
+        flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
+        // The slot has the errors of an earlier reading.
+        if amongClimbers then lookLevel(into)
     else
-      if lanes.inSpace then
-        System.arraycopy(startZ, 0, seenZ, into, WORLDS)
-        Arrays.fill(seenVz, into, into + WORLDS, 0f)
+      if lanes.inSpace || amongClimbers then lookLevel(into)
       for world <- 0 until WORLDS do
         seenX(into + world) = startX(world) + resting.northM.toFloat
         seenY(into + world) = startY(world) + resting.eastM.toFloat
       Arrays.fill(seenVx, into, into + WORLDS, resting.northMps.toFloat)
       Arrays.fill(seenVy, into, into + WORLDS, resting.eastMps.toFloat)
+
+  private def lookLevel(into: Int): Unit =
+    System.arraycopy(startZ, 0, seenZ, into, WORLDS)
+    Arrays.fill(seenVz, into, into + WORLDS, 0f)
 
   def act(times: Array[Float], at: Int, commanded: Directions, from: Int): Unit =
     if isCommanded then
