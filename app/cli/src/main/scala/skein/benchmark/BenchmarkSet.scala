@@ -25,12 +25,19 @@ final case class BenchmarkSet(
     copy(entries = entries ++ policies.zip(names).flatMap: (policy, name) =>
       entries.map(entry => entry.copy(name = s"${entry.name}, $name", policy = Some(policy))))
 
+  /** The tasks whose scenarios a program knows; if there are none, its own scenarios. */
+  def tasksOf(program: Scenarios): Vector[BenchmarkSet.Named] =
+    val known = tasks.filter(task => program.names.contains(task.scenario))
+    if known.isEmpty then program.names.map(BenchmarkSet.Named.of) else known
+
 object BenchmarkSet:
   /** To be raised when any figure may change: results of different versions are not compared. */
   val Version = 3
 
   /** A name in the table, and the text of its settings. */
-  final case class Named(name: String, text: String)
+  final case class Named(name: String, text: String):
+    /** The scenario of a task. */
+    def scenario: String = ConfigFactory.parseString(text).getString("scenario")
 
   object Named:
     /** A scenario as a task.

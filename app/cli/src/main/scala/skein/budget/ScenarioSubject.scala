@@ -33,7 +33,7 @@ final case class ScenarioQuestion(
           plant <-
             WholeFlights.plant(engagement, WholeFlights.climbs(engagement), conditions.plant, plantIsTold)
           flown <- conditions
-            .copy(plant = plant, altitudeM = engagement.altitudeM)
+            .copy(plant = plant, altitudeM = Conditions.altitudeM(scenario))
             .resolved
         yield WholeFlights
           .whole(engagement, objective)

@@ -10,7 +10,7 @@ import skein.units.Expect
 final case class BenchmarkOptions(
     @arg(doc =
       "a task: duel, surround, formation, crossing, shadow or hidden-shadow; can be repeated; without one, and without " +
-        "--scenario, all"
+        "--scenario, all whose scenarios the program has; if there are none, its own scenarios"
     )
     task: Seq[String],
     @arg(doc = "a scenario of your own as a task, by its name or its file; can be repeated")
@@ -54,7 +54,10 @@ final class BenchmarkCommand(using Scenarios)
       folder  <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
       set = all
         .copy(
-          tasks = (if options.task.isEmpty && own.nonEmpty then Vector.empty else tasks) ++ own,
+          tasks =
+            if options.task.nonEmpty then tasks ++ own
+            else if own.nonEmpty then own.toVector
+            else all.tasksOf(summon[Scenarios]),
           entries = entries
         )
         .flownBy(options.policy)

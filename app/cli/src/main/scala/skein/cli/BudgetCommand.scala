@@ -1,7 +1,9 @@
 package skein.cli
 
-import java.nio.file.Path
+import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
+import scala.util.Try
+import skein.blocks.Ledger
 import skein.budget.*
 import skein.record.LoopKind
 import skein.scenario.Scenarios
@@ -92,7 +94,10 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
           maps <- elsewhere(cluster, options, questions, subjects, folder, threads):
             fly(options, _, tolerance, axes, legs)
           isWhole = maps.size == subjects.size && maps.forall(_.budget.jittersMs == axes.jittersMs)
-          _       = tell(options, maps, atJitterMs)
+          // The next map in this folder may be of another question.
+          _ =
+            if isWhole && cluster.isDefined then Try(Files.deleteIfExists(folder.resolve(Ledger.Name))): Unit
+          _ = tell(options, maps, atJitterMs)
           files <- write(maps, isWhole, atJitterMs, folder)
           _ = Shown(options.json.value).say(s"written: ${files.mkString(", ")}")
           _ <-

@@ -69,6 +69,9 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** Names of options that it shares with another command but refuses; help and completion omit them. */
   protected def refusedAlways: Set[String] = Set.empty
 
+  /** Whether the text of a scenario's file replaces its path before the options are read. */
+  protected def readsScenario: Boolean = true
+
   /** All values of an option, by option name, if the set is known. */
   protected def known: Map[String, Seq[String]] = Map.empty
 
@@ -94,7 +97,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
 
   /** Replaces the path of a scenario's file by the file's text. */
   private def scenarioRead(words: Seq[String]): Either[String, Seq[String]] =
-    if !names.contains(Command.Scenario) then Right(words)
+    if !readsScenario || !names.contains(Command.Scenario) then Right(words)
     else
       val (arguments, behind) = words.span(_ != "--")
       Expect

@@ -163,8 +163,8 @@ final case class FlightOptions(
       _ <- Expect.that(loop.isEmpty || !asPaper.value):
         s"--as-paper flies the paper's loops: expected no --loop beside it, got ${loop.mkString(", ")}"
       file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
-      told = FlightOptions.hovering(looping(flags.withFallback(file), mayPause))
-      merged <- FlightOptions.scenarioRead(told.withFallback(ConfigFactory.load()).resolve())
+      told = flags.withFallback(file).withFallback(ConfigFactory.load()).resolve()
+      merged <- FlightOptions.scenarioRead(FlightOptions.hovering(looping(told, mayPause)))
       _      <- ConfigMistakes.ofShape(merged, "skein.fly").toLeft(())
       own    <- ofScenario(merged)
     yield own.withFallback(merged).withOnlyPath("skein.fly")
@@ -175,7 +175,7 @@ final case class FlightOptions(
   private def looping(told: Config, mayPause: Boolean): Config =
     val wire     = Try(told.getString("skein.fly.wire")).toOption
     val isOurs   = mayPause && !told.hasPath("skein.fly.only") && !wire.contains(Wire.Mavlink.label)
-    val isChosen = loop.nonEmpty || told.hasPath("skein.fly.loops") && !asPaper.value
+    val isChosen = loop.nonEmpty || ConfigMistakes.isGiven("skein.fly.loops", told) && !asPaper.value
     if isOurs || isChosen then told
     else
       val loops = FlightOptions.paperLoops ++ Option.when(!asPaper.value)(LoopKind.Predictive.label)
@@ -279,10 +279,9 @@ object FlightOptions:
 
   /** Makes a vehicle hover while its solver is silent, unless the configuration chooses otherwise. */
   private def hovering(told: Config): Config =
-    // A reference to another key cannot be resolved yet.
-    def says(key: String) = Try(told.hasPath(s"skein.fly.$key")).getOrElse(true)
+    def says(key: String) = ConfigMistakes.isGiven(s"skein.fly.$key", told)
     if !says("solver") || says("fallback") then told
-    else told.withFallback(configured(Seq(("--fallback", "fallback", Fallback.Hover.label))))
+    else configured(Seq(("--fallback", "fallback", Fallback.Hover.label))).withFallback(told)
 
   private def read(path: String): Either[String, Config] =
     for

@@ -113,6 +113,8 @@ final class FlyCommand(using Scenarios)
       secured <- options.secured.checked(settings.solver)
       _       <- Expect.that(settings.solver.isEmpty || learning.isEmpty):
         "--learn: a policy learns in the flight's own process; not together with --solver"
+      _ <- Expect.that(!settings.planInPacket || learning.isEmpty):
+        "--plan-in-packet: expected policies that do not learn in flight, since they decide for later moments too"
       _ <- Expect.that(!settings.decentralised || learning.isEmpty):
         "--decentralised: expected policies that do not learn in flight, which is one learner for all"
       _ <- Expect.that(clock == ClockKind.Real || !options.view.view.value):
@@ -126,14 +128,16 @@ final class FlyCommand(using Scenarios)
       scene = if isShared then Scene.Empty else settings.world.scene
       known = TrieMap.empty[String, Try[FlightSummary]]
       sinks = RecordOptions.Sinks(options.beside, out, scene)
-      _     = if settings.images.nonEmpty && settings.loops.contains(LoopKind.Paused) then
+      _ <- options.beside.free(plans, out)
+      _ = if settings.images.nonEmpty && settings.loops.contains(LoopKind.Paused) then
         Console.err.println("paused records no images of --images; the other loops do")
       flown <- clock match
         case ClockKind.Real =>
           for
             _ <- nothingToOverwrite(plans ++ plans.flatMap(_.twins(twins)), out)
             _ <- OpenFiles.enoughFor(
-              plans.size,
+              // On a running simulator, flights follow one another.
+              if isShared then 1 else plans.size,
               if settings.decentralised then settings.fleet.agents.size else 1
             )
             _ <- FlyCommand.vehiclesThere(settings, simulator)
@@ -165,9 +169,10 @@ final class FlyCommand(using Scenarios)
               s"flying ${Decimals.counted(plans.size, "flight")} of " +
                 s"${settings.duration.toSeconds.brief} s in virtual time"
             )
-            landed <- flyVirtual(settings, plans, out)(known.put(_, _): Unit)
-            _      <- Expect.all(landed)(one => options.beside.exported(one.plan, out))
-          yield LiveCommand.Flown(landed, None)
+            flown = flyVirtual(settings, plans, out)(known.put(_, _): Unit)
+            _ <- Expect.that(flown.landed.nonEmpty)(flown.grounded.mkString)
+            exported = Expect.all(flown.landed)(one => options.beside.exported(one.plan, out))
+          yield flown.and(LiveCommand.Flown(Vector.empty, exported.left.toOption))
       unwritten = sinks.failures.map(_ + "; ./skein export makes it of the recording")
       _ <- all(
         kept(out)(report(flown.landed, known.toMap, out, Shown(options.json.value))),
@@ -213,20 +218,21 @@ final class FlyCommand(using Scenarios)
       count: Int,
       ahead: Preview.Flown,
       out: Path
-  ): Either[String, Vector[FlightResult]] =
+  ): LiveCommand.Flown =
     val twins = landed.filter(_.outcome == FlightOutcome.Completed).flatMap(SolverOptions.twins(_, count))
     val (known, due) = twins.partition(ahead.contains)
-    if twins.isEmpty || Edge.isInterrupted then Right(Vector.empty)
+    if twins.isEmpty || Edge.isInterrupted then LiveCommand.Flown(Vector.empty, None)
     else
       val flown = known.map: plan =>
         ahead(plan).landed.copy(written = ahead(plan).recorder.writeTo(plan.file(out)))
-      if due.isEmpty then Right(flown)
+      if due.isEmpty then LiveCommand.Flown(flown, None)
       else
         val seeds = due.map(_.seed)
         Console.err.println(
           s"virtual twins of the live flights: ${due.size}, seeds ${seeds.min} to ${seeds.max}"
         )
-        VirtualFlights.fly(settings, due, out)((_, _) => ()).map(flown ++ _)
+        val (missing, landed) = VirtualFlights.fly(settings, due, out)((_, _) => ())
+        LiveCommand.Flown.virtual(missing, flown ++ landed)
 
   /** @param keep called with each flight's name and summary, while its records are in memory and others still
     *   run
@@ -235,14 +241,15 @@ final class FlyCommand(using Scenarios)
       settings: FlySettings,
       plans: Vector[FlightPlan],
       out: Path
-  )(keep: (String, Try[FlightSummary]) => Unit): Either[String, Vector[FlightResult]] =
-    val written = AtomicInteger()
-    Edge.tellingIfCut(FlyCommand.recorded(written.get, plans.size, out)):
+  )(keep: (String, Try[FlightSummary]) => Unit): LiveCommand.Flown =
+    val written           = AtomicInteger()
+    val (missing, landed) = Edge.tellingIfCut(FlyCommand.recorded(written.get, plans.size, out)):
       VirtualFlights.fly(settings, plans, out): (landed, recorder) =>
         if landed.written.isRight then written.incrementAndGet(): Unit
         val id = landed.plan.id
         Console.err.println(s"$id has ended; SHA-256 of its recording: ${recorder.digest}")
         keep(id, Try(FlightSummary.of(recorder.recording)))
+    LiveCommand.Flown.virtual(missing, landed)
 
   /** Prints the recordings' folder if the command is terminated after the flights. */
   private def kept[A](out: Path)(body: => A): A =

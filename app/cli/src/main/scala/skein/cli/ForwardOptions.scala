@@ -13,7 +13,8 @@ final case class ForwardOptions(
     @arg(doc =
       "the objective: last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M), or a " +
         "weighted sum such as '0.7*last10s + 0.3*effort'; 'minimise' " +
-        "or 'maximise' may precede it (default: last10s)"
+        "or 'maximise' may precede it (default: last10s; of a scenario, a sum of its measures: expected in search " +
+        "and learn, by default the first in budget)"
     )
     objective: Option[String],
     @arg(doc = "paused, sequential, futures, stream or predictive (default: stream)")
@@ -26,7 +27,8 @@ final case class ForwardOptions(
     movesInFlight: Option[Int],
     @arg(doc =
       "model that flies: reduced, drag, tilt, quadrotor, quadrotor:mass=1.3,drag=2,lag=1.5 (tilt: likewise), ideal, car, mujoco:FILE, a FILE of ./skein identify, or " +
-        "reduced:FILE for its model of three parameters (default: reduced)"
+        "reduced:FILE for its model of three parameters (default: reduced; of a scenario drag, or in search and budget " +
+        "tilt or quadrotor where its vehicles climb)"
     )
     plant: Option[String],
     @arg(doc =

@@ -24,11 +24,13 @@ private[cli] object IdentifiedVehicles:
     val (without, wanted) = named.partition(_.stretches.isEmpty)
     if wanted.nonEmpty && without.nonEmpty then
       say(s"left out: ${listed(without)}, commanded by other actions than velocities")
+    val unknown = names.filterNot(name => all.exists(_.name == name))
     Either.cond(
-      wanted.nonEmpty,
+      wanted.nonEmpty && unknown.isEmpty,
       wanted,
       if all.isEmpty then "expected recordings with commands to vehicles, got none"
-      else if named.isEmpty then s"--vehicle: expected one of ${listed(all)}, got ${names.mkString(", ")}"
+      else if unknown.nonEmpty then
+        s"--vehicle: expected one of ${listed(all)}, got ${unknown.mkString(", ")}"
       else s"expected vehicles commanded by velocities, got other actions of ${listed(without)}"
     )
 

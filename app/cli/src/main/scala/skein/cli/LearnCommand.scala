@@ -10,7 +10,7 @@ import skein.measure.FlightSummary
 import skein.policy.{NeuralShape, Role}
 import skein.report.{Section, Typed}
 import skein.scenario.{PaperDuel, Scenarios}
-import skein.search.{ClusterEvaluator, Conditions, Effort, Judge, NamedFiles}
+import skein.search.{ClusterEvaluator, Conditions, Effort, Judge, NamedFiles, VerifiedQuestion}
 import skein.settings.{PolicyFile, ScenarioSettings, VehicleChoice}
 import skein.training.*
 import skein.units.Decimals.significant
@@ -118,6 +118,8 @@ final class LearnCommand(program: String)(using Scenarios)
       _    <- Arguments.resumed(options, may, "--threads, --flights and who judges")
       file <- LearnFile.read(Path.of(folder)).left.map("--resume: " + _)
       _    <- NamedFiles.unchanged(file.files, "learning")
+      was  <- file.question.setup
+      _    <- VerifiedQuestion.unchanged(file.probe, was.probe, "learning")
     yield (Path.of(folder), file.question, file.state)
 
   private def begin(options: LearnOptions): Either[String, Begun] =
@@ -285,6 +287,9 @@ object LearnCommand:
     val onPolicy  = algorithm == "ppo"
     val scenario  = options.scenario.orElse(scenarios.firstWithoutGame).getOrElse(PaperDuel.Name)
     for
+      _ <- Expect.that(!onPolicy || options.updatesPerStep.isEmpty)(
+        "--updates-per-step: expected with sac or ddpg, got ppo"
+      )
       named <- Arguments.settings(options.set)
       set    = named.toMap
       isGame = scenarios.isPapersGame(scenario, set)
@@ -342,7 +347,7 @@ object LearnCommand:
     // Teams fly low, where the model of three parameters is not valid.
     yield conditions.copy(
       plant = forward.plant.getOrElse("drag"),
-      altitudeM = -stated.agents.head.startPositionNed.z
+      altitudeM = Conditions.altitudeM(stated)
     )
 
   private def range(text: String): Either[String, (Double, Double)] =

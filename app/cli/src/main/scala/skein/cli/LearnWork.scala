@@ -22,19 +22,14 @@ private[cli] object LearnWork:
   private final case class ProbedQuestion(question: LearnQuestion, probe: Vector[RunningStats])
       derives ReadWriter
 
-  private val Probes = 0 until 4
-
-  private def probe(setup: LearnSetup) =
-    setup.judges(threads = 1)(Judge.Baseline).tallies(Vector(setup.baseline.candidate), Probes)
-
   def question(setup: LearnSetup): ArraySeq[Byte] =
-    JsonText.bytes(ProbedQuestion(setup.question, probe(setup)))
+    JsonText.bytes(ProbedQuestion(setup.question, setup.probe))
 
   def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       posed <- JsonText.read[ProbedQuestion](asked, "learning's question")
       setup <- posed.question.setup
-      came = probe(setup)
+      came = setup.probe
       _ <- Expect.that(came == posed.probe):
         s"the baseline comes to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
           "has a file that --link or --plant names another content here?"

@@ -1,6 +1,6 @@
 package skein.cli
 
-import java.nio.file.Path
+import java.nio.file.{Files, Path}
 import mainargs.{Leftover, ParserForClass, arg}
 import skein.measure.{LinkFit, RoundTripTrace}
 import skein.record.RecordingReader
@@ -41,8 +41,14 @@ object LinkFitCommand
       text  = fit.text(s"file:${Path.of(options.out).resolve(Measured)}")
       _      <- LatencyProfile.parse(text, _ => Right("1")).left.map(_.message)
       folder <- OutFolder.made("--out", options.out)
+      _      <- unchanged(folder.resolve(Measured), written(file, trips))
       _      <- OutFolder.write(folder, Seq(OutFolder.text(Measured, written(file, trips))))
     yield say(fit, text)
+
+  /** Refuses to change the round trips that an earlier profile names. */
+  private def unchanged(measured: Path, text: String): Either[String, Unit] =
+    Expect.that(!Files.exists(measured) || TextFile.read(measured.toString) == Right(text)):
+      s"--out: $measured holds other round trips, which their profile names: expected another folder"
 
   private def read(file: String): Either[String, Vector[RoundTripTrace]] =
     if Seq(".duckdb", ".mcap").exists(file.endsWith) then

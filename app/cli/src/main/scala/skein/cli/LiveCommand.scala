@@ -4,7 +4,14 @@ import java.nio.file.Path
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
 import scala.concurrent.Promise
-import skein.flight.{FlightAssembler, FlightResult, LiveFlights, OutsideRequests, ProgressBoard}
+import skein.flight.{
+  FlightAssembler,
+  FlightResult,
+  LiveFlights,
+  NotFlown,
+  OutsideRequests,
+  ProgressBoard
+}
 import skein.link.{Address, TcpTransport}
 import skein.loop.LoopKind
 import skein.record.Recordable
@@ -115,10 +122,15 @@ private[cli] final class LiveCommand(
 private[cli] object LiveCommand:
   /** @param grounded why some flights were not run, if so */
   final case class Flown(landed: Vector[FlightResult], grounded: Option[String]):
-    def and(more: Either[String, Vector[FlightResult]]): Flown =
-      more.fold(
-        reason => copy(grounded = Some((grounded ++ Some(reason)).mkString("\n"))),
-        twins => copy(landed ++ twins)
+    def and(more: Flown): Flown =
+      Flown(landed ++ more.landed, (grounded ++ more.grounded).reduceOption(_ + "\n" + _))
+
+  object Flown:
+    /** Flights in virtual time, of which some may be missing. */
+    def virtual(missing: Vector[NotFlown], landed: Vector[FlightResult]): Flown =
+      Flown(
+        landed,
+        Option.when(missing.nonEmpty)(NotFlown.message(missing, missing.size + landed.size))
       )
 
   /** Approximate time within which vehicles on the way to their starts receive a hover command. */

@@ -157,7 +157,10 @@ final class MarginCommand(using scenarios: Scenarios)
       )
       _ <-
         Expect.that(all.size <= MostLinks)(s"--link, --delays: expected $MostLinks at most, got ${all.size}")
-    yield all.filterNot(_ == LatencyProfile.none)
+      // Every margin is compared with none.
+      others = all.filterNot(_ == LatencyProfile.none)
+      _ <- Expect.that(others.nonEmpty)("--link: expected one with latency, got none alone")
+    yield others
 
   protected def execute(options: MarginOptions): Either[String, Unit] =
     for

@@ -8,6 +8,7 @@ import mainargs.{Leftover, ParserForClass, arg}
 import scala.util.Using
 import skein.record.FileReason
 import skein.report.Typed
+import skein.scenario.ScenarioNames
 import skein.units.Expect
 
 /** Command-line options of `./skein new`, with their help texts. */
@@ -46,14 +47,19 @@ object NewCommand
   private def className(name: String)   = name.split('-').map(_.capitalize).mkString
   private def packageName(name: String) = name.replace("-", "")
 
-  /** Why a project of this name would not compile: its sources already use its package's or class's name. */
+  /** Why a project of this name would not compile, because its sources already use its package's or class's
+    * name, or its scenario would not fly.
+    */
   private def taken(name: String): Option[String] =
     val sources = Seq("Scenario.scala.txt", "Suite.scala.txt").map(resource).mkString("\n")
     // Ignores members of other names, and string literals.
     val isUsed = s"""(?<![.\"\\w])${className(name)}\\b""".r.findFirstIn(sources).isDefined
-    Option.when(isUsed || Reserved(packageName(name)))(
-      s"expected a name that means nothing else in Scala, got '$name'; for example $name-flight"
-    )
+    Option
+      .when(isUsed || Reserved(packageName(name)))(
+        s"expected a name that means nothing else in Scala, got '$name'"
+      )
+      .orElse(ScenarioNames.mistake(name))
+      .map(why => s"$why; for example $name-flight")
 
   /** Scala's keywords, and packages that the sources need. */
   private val Reserved =

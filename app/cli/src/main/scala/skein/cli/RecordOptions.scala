@@ -1,10 +1,18 @@
 package skein.cli
 
-import java.nio.file.Path
+import java.nio.file.{Files, Path}
 import java.util.concurrent.ConcurrentLinkedQueue
 import mainargs.{ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
-import skein.record.{ClockKind, McapRecording, McapRowSink, PostgresRowSink, RecordingHeader, RowSink}
+import skein.record.{
+  ClockKind,
+  McapRecording,
+  McapRowSink,
+  PostgresRowSink,
+  RecordError,
+  RecordingHeader,
+  RowSink
+}
 import skein.scene.Scene
 import skein.settings.{FlightPlan, NamedScene}
 
@@ -46,6 +54,15 @@ final case class RecordOptions(
     record.distinct.map:
       case "mcap" => McapRowSink.open(fileOf(plan, folder), heading, scene).left.map(_.message)
       case url    => PostgresRowSink.open(url, heading).left.map("--record: " + _)
+
+  /** Left names an MCAP file of a flight that exists already. */
+  def free(plans: Vector[FlightPlan], folder: Path): Either[String, Unit] =
+    plans
+      .filter(_ => wantsMcap)
+      .map(fileOf(_, folder))
+      .find(Files.exists(_))
+      .map(RecordError.AlreadyExists(_).message)
+      .toLeft(())
 
   private def fileOf(plan: FlightPlan, folder: Path) =
     val recording = plan.file(folder)

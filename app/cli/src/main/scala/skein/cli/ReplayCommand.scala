@@ -45,18 +45,20 @@ final class ReplayCommand(using Scenarios)
     yield ()
 
   private def replayAll(files: Seq[String]): Either[String, Unit] =
-    Expect.each(files)(replay).flatMap(same => Expect.that(same.forall(identity))("not the same"))
+    Expect.all(files)(replay).map(_ => ())
 
-  private def replay(file: String): Either[String, Boolean] =
-    Replayed
-      .of(Path.of(file))
-      .left
-      .map(reason => if reason.contains(file) then reason else s"$file: $reason")
-      .map: replayed =>
-        val lines = decisions("decided again on the recorded readings", replayed.decidedAgain, replayed)
-          +: replayed.flownAgain.toSeq.flatMap(flown(_, replayed))
-        lines.foreach(line => Console.out.println(s"${replayed.id}: $line"))
-        replayed.isSame
+  /** @return Left says what differs, or why it could not be replayed */
+  private def replay(file: String): Either[String, Unit] =
+    for
+      replayed <- Replayed.of(Path.of(file)).left.map(reason =>
+        if reason.contains(file) then reason else s"$file: $reason"
+      )
+      lines = decisions("decided again on the recorded readings", replayed.decidedAgain, replayed)
+        +: replayed.flownAgain.toSeq.flatMap(flown(_, replayed))
+      _ = lines.foreach(line => Console.out.println(s"$file: ${replayed.id}: $line"))
+      _ <- replayed.notFlownAgain.map(why => s"$file: not flown again: $why").toLeft(())
+      _ <- Expect.that(replayed.isSame)(s"$file: not the same")
+    yield ()
 
   private def flown(again: FlownAgain, replayed: Replayed): Seq[String] =
     val contents =

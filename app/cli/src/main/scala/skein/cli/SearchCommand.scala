@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import skein.gpu.CudaGpu
 import skein.lanes.gpu.GpuAccelerator
-import skein.optimise.{CmaEs, ScenarioTerm, SearchState}
+import skein.optimise.{CmaEs, ScenarioTerm}
 import skein.policy.PolicyFamily
 import skein.report.Typed
 import skein.scenario.Scenarios
@@ -33,12 +33,13 @@ final case class SearchOptions(
     )
     episodes: Option[Int],
     @arg(doc =
-      "candidates in a generation of cma-es and cross-entropy (default: 40, or more for many parameters)"
+      "candidates in a generation of cma-es and cross-entropy (default: 40, or more for many parameters; " +
+        "of a scenario 128; 10 with flights in virtual time)"
     )
     population: Option[Int],
     @arg(doc =
       "fresh episodes on which the winner is measured (default: 4096 with a reduced model by " +
-        "SIMD, fewer where an episode costs more); also the most for each point of the landscape"
+        "SIMD, fewer where an episode costs more; of a scenario 256; 16 with flights in virtual time); also the most for each point of the landscape"
     )
     fresh: Option[Int],
     @arg(doc =
@@ -89,16 +90,16 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         CudaGpu.find().map(gpu => Some(GpuAccelerator(gpu))).left.map("--gpu: " + _)
       else Right(None)
       begun <- options.resume.fold(begin(options))(resume(options, _))
-      (folder, question, state) = begun
+      (folder, question, stored) = begun
       ready <- question.setup.map(_.acceleratedBy(accelerator))
       _     <- Expect.that(accelerator.isEmpty || ready.fliesForward):
         "--gpu: expected what forward simulation flies; these are flights in virtual time"
       _ <- OutFolder.alone(folder):
         EpisodeRunner.using(cluster, program, ready, folder, threads, shown): runner =>
-          SearchJob(ready, folder, threads, runner, shown).run(state.getOrElse(ready.search.start))
+          SearchJob(ready, folder, threads, runner, shown).run(stored)
     yield ()
 
-  private type Begun = (Path, PosedSearch, Option[SearchState])
+  private type Begun = (Path, PosedSearch, Option[SearchFile])
 
   private def resume(options: SearchOptions, folder: String): Either[String, Begun] =
     val may = Arguments.told(options.cluster) ++ Set("--threads", "--gpu", "--json")
@@ -106,7 +107,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       _    <- Arguments.resumed(options, may, "--threads and who computes")
       file <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)
       _    <- NamedFiles.unchanged(file.files, "the search")
-    yield (Path.of(folder), file.question, Some(file.state))
+    yield (Path.of(folder), file.question, Some(file))
 
   private def begin(options: SearchOptions): Either[String, Begun] =
     val folder = Path.of(options.out.getOrElse(OutFolder.dated("searches")))
@@ -117,8 +118,13 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       _ <- OutFolder.made("--out", folder.toString)
     yield (folder, question, None)
 
-  private def question(options: SearchOptions) =
-    options.scenario.orElse(scenarios.firstWithoutGame).fold(duel(options))(team(options, _))
+  private def question(options: SearchOptions): Either[String, PosedSearch] =
+    for
+      _ <- Expect.that(options.population.isEmpty || options.method.forall(SearchQuestion.WithPopulation)):
+        s"--population: expected with ${SearchQuestion.WithPopulation.mkString(" or ")}, " +
+          s"got ${options.method.mkString}"
+      question <- options.scenario.orElse(scenarios.firstWithoutGame).fold(duel(options))(team(options, _))
+    yield question
 
   private def team(options: SearchOptions, scenario: String): Either[String, TeamQuestion] =
     import options.forward

@@ -16,10 +16,18 @@ private[cli] final class SearchJob(
 ):
   import SearchJob.*
 
+  private val probe = VerifiedQuestion.probe(ready.acceleratedBy(None))
+
   /** Notes the engine of each candidate, to report those that did not use the expected one. */
   private val candidates = NotedEvaluator(runner(Judge.Candidates), ready.engine(_, Judge.Candidates))
 
-  def run(from: SearchState): Either[String, Unit] =
+  /** @param stored the search where it was stopped; without it, it begins */
+  def run(stored: Option[SearchFile]): Either[String, Unit] =
+    VerifiedQuestion
+      .unchanged(stored.fold(Vector.empty)(_.probe), probe, "the search")
+      .flatMap(_ => search(stored.fold(ready.search.start)(_.state)))
+
+  private def search(from: SearchState): Either[String, Unit] =
     say(introduction)
     @volatile var stoppedAt = Option.empty[Long]
     def isStopped           = stoppedAt.isDefined
@@ -30,7 +38,7 @@ private[cli] final class SearchJob(
       var last      = from
       runner.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(last)}"))
       val searched =
-        SearchRun(ready.search, ready.question, candidates, folder, () => System.nanoTime())
+        SearchRun(ready.search, ready.question, candidates, folder, () => System.nanoTime(), probe)
           .run(from, () => isStopped): state =>
             last = state
             line.show(state.flown, progress(state))

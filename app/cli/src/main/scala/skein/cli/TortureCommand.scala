@@ -1,9 +1,10 @@
 package skein.cli
 
+import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
-import skein.report.{Section, TextTable}
-import skein.scenario.{ScenarioText, Scenarios}
-import skein.settings.NamedScene
+import skein.report.{Section, TextTable, Typed}
+import skein.scenario.Scenarios
+import skein.settings.{NamedScene, ScenarioSettings}
 import skein.torture.{FaultPlan, FaultVerdict}
 import skein.units.*
 
@@ -45,6 +46,9 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
     ):
   import TortureCommand.*
 
+  /** The path is printed for flights that broke a rule. */
+  override protected def readsScenario: Boolean = false
+
   protected def execute(options: TortureOptions): Either[String, Unit] =
     for
       duration <- Span
@@ -71,7 +75,8 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
         "--out: expected with --workers or --cluster, for what they computed"
       shown = Shown(options.json.value)
       scene <- options.scene.fold(Right(None))(NamedScene.read(_).map(Some(_)).left.map("--scene: " + _))
-      task     = options.scenario.orElse(scenarios.firstWithoutGame.map(_ => scenarios.kinds.head.name))
+      named <- Expect.each(options.scenario)(ScenarioSettings.named).left.map("--scenario: " + _)
+      task     = named.headOption.orElse(scenarios.firstWithoutGame.map(_ => scenarios.kinds.head.name))
       question = TortureQuestion.of(duration, task, scene)
       ready <- question.ready
       count = Count(options, duration, shown)
@@ -113,6 +118,13 @@ object TortureCommand:
   private val BlockFlights = 2
   private val ShowNanos    = 10_000_000_000L
 
+  /** The command that repeats a flight, as a person is to type it. */
+  private[cli] def again(options: TortureOptions, seed: Long): String =
+    def typed(option: String, name: Option[String]) =
+      name.fold("")(word => s" $option ${Typed.path(Path.of(word))}")
+    s"./skein torture --first $seed --seeds 1 --duration ${Typed.word(options.duration)}" +
+      typed("--scenario", options.scenario) + typed("--scene", options.scene)
+
   /** Counts flights as they end, and prints progress. */
   private final class Count(options: TortureOptions, duration: Span, shown: Shown):
     private val startedAt = System.nanoTime()
@@ -131,12 +143,7 @@ object TortureCommand:
         broken :+= verdict
         shown.say(verdict.faultPlan.toString)
         verdict.violations.foreach(line => shown.say(s"  $line"))
-        val scenario = options.scenario.fold("")(name => s" --scenario ${ScenarioText.fileOf(name)}")
-        val scene    = options.scene.fold("")(name => s" --scene $name")
-        shown.say(
-          s"  again: ./skein torture --first ${verdict.faultPlan.seed} --seeds 1 " +
-            s"--duration ${options.duration}$scenario$scene"
-        )
+        shown.say(s"  again: ${again(options, verdict.faultPlan.seed)}")
       if System.nanoTime() - shownAt > ShowNanos then
         shownAt = System.nanoTime()
         show()

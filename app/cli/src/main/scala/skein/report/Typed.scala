@@ -6,8 +6,9 @@ import java.nio.file.Path
 private[skein] object Typed:
 
   /** A path as one shell word that is not an option. */
-  def path(path: Path): String =
-    val text = if path.toString.startsWith("-") then s"./$path" else path.toString
+  def path(path: Path): String = word(if path.toString.startsWith("-") then s"./$path" else path.toString)
+
+  def word(text: String): String =
     if text.matches("[\\p{L}\\p{N}._/+@%-]+") then text else s"'${text.replace("'", "'\\''")}'"
 
   /** The pattern of all recordings of a folder: the star must stay outside the quotation marks. */

@@ -5,11 +5,11 @@ import skein.lanes.{Accelerator, TeamBatch}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.Role
 import skein.port.Moves
-import skein.scenario.{PaperDuel, Scenarios}
+import skein.scenario.{PaperDuel, Scenario, Scenarios}
 import skein.settings.{FlySettings, SensorFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.units.{Decimals, Expect, Span}
-import skein.vehicle.SensorNoise
+import skein.vehicle.{SensorNoise, VehicleKind}
 import upickle.default.ReadWriter
 import upickle.implicits.key
 
@@ -72,6 +72,12 @@ final case class Conditions(
     yield Conditions.Resolved(timing, vehicle, game.seeing(Role.Pursuer, sensor))
 
 object Conditions:
+
+  /** Altitude at which a scenario's first multirotor starts, m. Cars alone have the duel's, for models that
+    * no vehicle flies by.
+    */
+  def altitudeM(scenario: Scenario): Double =
+    scenario.agents.find(_.kind != VehicleKind.Car).fold(PaperDuel.AltitudeM)(-_.startPositionNed.z)
 
   /** @param game the paper's, in which policies of families are evaluated */
   final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, game: Engagement):

@@ -6,12 +6,14 @@ import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson}
 /** A search on disk: its question, and its current state.
   *
   * @param files [[NamedFiles.digests]] of the names in the question
+  * @param probe [[VerifiedQuestion.probe]] of the program that wrote it; empty in older files
   */
 final case class SearchFile(
     version: Int,
     question: PosedSearch,
     state: SearchState,
-    files: Map[String, String] = Map.empty
+    files: Map[String, String] = Map.empty,
+    probe: Vector[RunningStats] = Vector.empty
 )
 
 object SearchFile:

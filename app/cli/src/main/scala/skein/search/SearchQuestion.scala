@@ -51,7 +51,11 @@ final case class SearchQuestion(
       ReadySearch(this, searched, objective, TeamEngine.Reduced(flown, delays), method, fresh, seed)
 
 object SearchQuestion:
-  val Methods             = "grid, random, cross-entropy, cma-es, racing"
+  val Methods = "grid, random, cross-entropy, cma-es, racing"
+
+  /** The methods that make candidates by generations. */
+  val WithPopulation = Set("cma-es", "cross-entropy")
+
   private val MostRacing  = 100_000
   private val MostEpisode = 1_000_000
 

@@ -1,17 +1,20 @@
 package skein.search
 
 import java.nio.file.Path
-import skein.optimise.{Evaluator, Search, SearchState}
+import skein.optimise.{Evaluator, RunningStats, Search, SearchState}
 
 /** Runs a search to its end, or until it is stopped, and keeps its state on disk: killing the process loses a
   * few seconds.
+  *
+  * @param probe [[VerifiedQuestion.probe]], which a later program compares with its own
   */
 final class SearchRun(
     search: Search,
     question: PosedSearch,
     evaluator: Evaluator,
     folder: Path,
-    nanoTime: () => Long
+    nanoTime: () => Long,
+    probe: Vector[RunningStats] = Vector.empty
 ):
   import SearchRun.*
 
@@ -42,7 +45,7 @@ final class SearchRun(
     saved.flatMap(_ => save(state)).map(_ => state)
 
   private def save(state: SearchState) =
-    SearchFile.write(folder, SearchFile(SearchFile.Version, question, state, files))
+    SearchFile.write(folder, SearchFile(SearchFile.Version, question, state, files, probe))
 
 object SearchRun:
   private val FirstStep = 256

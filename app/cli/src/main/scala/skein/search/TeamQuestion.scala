@@ -71,7 +71,7 @@ final case class TeamQuestion(
       _      <- Expect.each(corners)(Objective.ofScenario(objective, _)).left.map("--objective, --vary: " + _)
       engine <- engine(by, plain +: corners, plantIsTold)
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
-    yield ReadySearch(this, SearchedScenario(this, kind, space), by, engine, method, Some(fresh), seed)
+    yield ReadySearch(this, SearchedScenario(this, kind, space, plain), by, engine, method, Some(fresh), seed)
 
   /** Chooses the engine: SIMD, if forward simulation supports the policies and the measures; world by world,
     * if measures are of whole flights; else flights in virtual time.
@@ -99,7 +99,7 @@ final case class TeamQuestion(
             conditions.plant,
             plantIsTold
           )
-          flown  <- conditions.copy(plant = plant, altitudeM = engagements.head.altitudeM).resolved
+          flown  <- conditions.copy(plant = plant, altitudeM = Conditions.altitudeM(all.head)).resolved
           delays <- flown.delays(link, engagements.head.agents.size).left.map("--link: " + _)
         yield WholeFlights
           .whole(engagements.head, by)
@@ -118,13 +118,19 @@ object TeamQuestion:
   def settings(set: Map[String, String], space: SearchSpace, candidate: Vector[Double]): Map[String, String] =
     set ++ space.axes.zip(candidate).map((axis, value) => axis.name -> value.toString)
 
+  private def valuesOf(scenario: Scenario): Map[String, Any] =
+    scenario.productElementNames.map(ConfigKeys.ofField).zip(scenario.productIterator).toMap
+
+  /** The settings that can be searched, by key. */
+  private[search] def numbersOf(scenario: Scenario): Map[String, Double] =
+    valuesOf(scenario).collect { case (key, value: Double) => key -> value }
+
   private def axis(kind: ScenarioKind[?], plain: Scenario, varied: Varied): Either[String, Axis] =
-    val defaults = plain.productElementNames.map(ConfigKeys.ofField).zip(plain.productIterator).toMap
-    val numbers  = defaults.collect { case (key, value: Double) => key -> value }
+    val numbers = numbersOf(plain)
     numbers.get(varied.key) match
       case Some(default) =>
         Right(Axis(varied.key, varied.least, varied.most, default.max(varied.least).min(varied.most)))
-      case None if defaults.contains(varied.key) =>
+      case None if valuesOf(plain).contains(varied.key) =>
         Left(
           s"--vary: expected a setting that measures something, got '${varied.key}', which counts or chooses"
         )
@@ -134,9 +140,16 @@ object TeamQuestion:
             s"nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
         )
 
-/** A scenario's settings within their bounds; each candidate is one scenario. */
-private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[?], val space: SearchSpace)
-    extends Searched:
+/** A scenario's settings within their bounds; each candidate is one scenario.
+  *
+  * @param plain the scenario without the searched settings
+  */
+private final class SearchedScenario(
+    question: TeamQuestion,
+    kind: ScenarioKind[?],
+    val space: SearchSpace,
+    plain: Scenario
+) extends Searched:
   import question.conditions.durationS
 
   def name: String                             = kind.name
@@ -144,14 +157,11 @@ private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[
   def subject(axes: String): String   = s"${kind.name} of ${scenario(space.defaults).agents.size} ($axes)"
   def isFast(engine: Engine): Boolean = engine.fliesByLanes
 
-  /** The scenario with its default settings. */
+  /** The scenario with its own settings, which may lie outside of the searched bounds. */
   val baseline: Baseline =
-    Baseline(
-      "plain",
-      s"${kind.name}, unchanged",
-      space.axes.map(_.name).zip(space.defaults),
-      told(space.defaults, " = ")(_.significant(4))
-    )
+    val own = TeamQuestion.numbersOf(plain)
+    val all = space.axes.map(axis => axis.name -> own(axis.name))
+    Baseline("plain", s"${kind.name}, unchanged", all, told(all.map(_._2), " = ")(_.significant(4)))
 
   private def told(candidate: Vector[Double], between: String)(number: Double => String) =
     space.axes.zip(candidate).map((axis, value) => axis.name + between + number(value)).mkString(", ")
@@ -170,7 +180,9 @@ private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[
 
   override lazy val isAtOnePace: Boolean =
     val paces =
-      (space.defaults +: space.grid(2)).map(scenario(_).agents.map(each => (each.speed, each.startHeading)))
+      (baseline.candidate +: space.defaults +: space.grid(2)).map(scenario(_).agents.map(each =>
+        (each.speed, each.startHeading)
+      ))
     paces.distinct.size == 1
 
   def effort(together: Engine, alone: Engine, by: Conditions.Resolved): Effort = Effort.ofTeam(together)

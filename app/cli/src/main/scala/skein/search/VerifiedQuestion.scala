@@ -2,7 +2,7 @@ package skein.search
 
 import scala.collection.immutable.ArraySeq
 import skein.cluster.BlockSolverFactory
-import skein.optimise.{RunningStats, ValueEvaluator}
+import skein.optimise.RunningStats
 import skein.scenario.Scenarios
 import skein.units.Expect
 import upickle.default.ReadWriter
@@ -20,18 +20,33 @@ object VerifiedQuestion:
 
   private val Probes = 0 until 4
 
-  private def probe(ready: ReadySearch, by: Judge => ValueEvaluator) =
-    by(Judge.Candidates).tallies(Vector(ready.space.defaults), Probes)
+  /** The defaults' result on the first episodes, by this process. */
+  def probe(ready: ReadySearch): Vector[RunningStats] =
+    ready.judges(1)(Judge.Candidates).tallies(Vector(ready.space.defaults), Probes)
+
+  /** Refuses to mix results of two programs.
+    *
+    * @param before the probe of the program that began; empty if it kept none
+    * @param began what has begun, for example `the search`
+    */
+  def unchanged(
+      before: Vector[RunningStats],
+      now: => Vector[RunningStats],
+      began: String
+  ): Either[String, Unit] =
+    Expect.that(before.isEmpty || RunningStats.areSame(now, before)):
+      s"--resume: by this program the first episodes score ${now.head.mean}, and they scored ${before.head.mean} " +
+        s"when $began began: expected the program of that time, or to begin anew"
 
   def bytes(ready: ReadySearch): ArraySeq[Byte] =
-    JsonText.bytes(VerifiedQuestion(ready.question, probe(ready, ready.judges(1))))
+    JsonText.bytes(VerifiedQuestion(ready.question, probe(ready)))
 
   /** Answers search questions about the scenarios known to this process. */
   def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       posed <- JsonText.read[VerifiedQuestion](asked, "a search's question")
       ready <- posed.question.setup
-      came = probe(ready, ready.judges(1))
+      came = probe(ready)
       _ <- Expect.that(RunningStats.areSame(came, posed.probe)):
         s"the defaults come to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
           "has a file that --link, --plant or --opponent names another content here?"

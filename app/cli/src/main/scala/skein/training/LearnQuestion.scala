@@ -4,7 +4,7 @@ import skein.environment.{EnvironmentBatch, EnvironmentSettings}
 import skein.forward.{Delays, Engagement}
 import skein.lanes.{Engine, TeamCandidate}
 import skein.learn.{Algorithm, LearnerSettings, SideTask}
-import skein.optimise.{Objective, TeamEvaluator, ValueEvaluator}
+import skein.optimise.{Objective, RunningStats, TeamEvaluator, ValueEvaluator}
 import skein.policy.{LearnedPolicy, LearnerSpace, PolicyFamily, Role}
 import skein.scenario.{PaperDuel, ScenarioText, Scenarios}
 import skein.search.{Baseline, Conditions, Judge}
@@ -169,6 +169,10 @@ final case class LearnSetup(
     val (own, learned) = (evaluator(_ => team), evaluator(from => team.flownBy(role, family.policy(from))))
     judge => if judge == Judge.Baseline then own else learned
 
+  /** The baseline's result on the first episodes, by this process. */
+  def probe: Vector[RunningStats] =
+    judges(threads = 1)(Judge.Baseline).tallies(Vector(baseline.candidate), LearnSetup.Probes)
+
   /** The engine of the episodes while it learns; Left says what was expected and what was given. */
   def engine(using Scenarios): Either[String, Engine] =
     EnvironmentBatch.engine(environment, game.opponent, Some(family.defaultPolicy))
@@ -216,5 +220,7 @@ final case class LearnSetup(
     Vector(question.turnRateRadPerS, 0.0) ++ Option.when(space.climbs)(question.climbMps)
 
 object LearnSetup:
+  private val Probes = 0 until 4
+
   /** Approximate number of evaluations in all. */
   private val Scores = 60

@@ -34,7 +34,8 @@ final class LearnRun(
   import LearnRun.*
   import setup.question
 
-  private val files = LearnFile.files(question)
+  private val files      = LearnFile.files(question)
+  private lazy val probe = setup.probe
 
   /** @param isStopped checked at every step; true abandons the current round
     * @param onRound called with every state
@@ -87,7 +88,11 @@ final class LearnRun(
       judging = None
     def save() =
       judged()
-      folder.fold(Right(()))(LearnFile.write(_, question, state, files, learner))
+      folder.fold(Right(()))(LearnFile.write(
+        _,
+        LearnFile(LearnFile.Version, question, state, files, probe),
+        learner
+      ))
     var savedAt = nanoTime()
 
     def round(): Either[String, Unit] = training.round(state.rounds, isStopped).flatMap:
@@ -105,7 +110,7 @@ final class LearnRun(
         onRound(state)
         saved
 
-    var mistake: Either[String, Unit] = if from.rounds == 0 then save() else Right(())
+    var mistake: Either[String, Unit] = if from.rounds == 0 then told(save()) else Right(())
     while mistake.isRight && state.rounds < setup.rounds && !isStopped() do mistake = told(round())
     // The learner has already changed in an abandoned round, so its state is not saved: the round is
     // repeated.

@@ -11,7 +11,9 @@ import java.nio.file.{Files, NoSuchFileException, Path}
 import java.util.zip.{CRC32C, CheckedInputStream, CheckedOutputStream}
 import scala.util.Using
 import skein.learn.Learner
+import skein.optimise.RunningStats
 import skein.record.FileReason
+import skein.search.SearchFile.given
 import skein.search.{NamedFiles, StateFile}
 import skein.units.Expect
 import upickle.default.ReadWriter
@@ -41,12 +43,14 @@ final case class LearnBest(steps: Long, mean: Double, weights: Vector[Double]) d
 /** A learning task on disk: `learn.json` with question and state, and next to it the learner's state.
   *
   * @param files [[NamedFiles.digests]] of the names in the question
+  * @param probe [[LearnSetup.probe]] of the program that wrote it; empty in older files
   */
 final case class LearnFile(
     version: Int,
     question: LearnQuestion,
     state: LearnState,
-    files: Map[String, String] = Map.empty
+    files: Map[String, String] = Map.empty,
+    probe: Vector[RunningStats] = Vector.empty
 ) derives ReadWriter
 
 object LearnFile:
@@ -84,18 +88,16 @@ object LearnFile:
   /** Writes all files atomically: after a crash the folder has either the old or the new state. */
   def write(
       folder: Path,
-      question: LearnQuestion,
-      state: LearnState,
-      files: Map[String, String],
+      stored: LearnFile,
       learner: Learner
   ): Either[String, Unit] =
-    val file = numbers(folder, state.rounds)
+    val file = numbers(folder, stored.state.rounds)
     for
       _ <- StateFile.replace(file, folder.resolve("learner.new")): bytes =>
         val sum = CRC32C()
         learner.save(DataOutputStream(CheckedOutputStream(bytes, sum)))
         DataOutputStream(bytes).writeLong(sum.getValue)
-      _ <- onDisk.write(folder, LearnFile(Version, question, state, files))
+      _ <- onDisk.write(folder, stored)
       _ <-
         try
           Right(Using.resource(Files.newDirectoryStream(folder, "learner-*.bin")):

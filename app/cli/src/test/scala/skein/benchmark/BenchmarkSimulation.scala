@@ -4,7 +4,7 @@ import java.nio.file.Files
 import skein.plot.Svg
 import skein.policy.{PolicyFamily, Role}
 import skein.report.Section
-import skein.scenario.Scenarios
+import skein.scenario.{Convoy, ScenarioKind, Scenarios, Shadow}
 import skein.settings.PolicyFile
 import skein.testing.{TemporaryFolders, Unhurried}
 
@@ -51,6 +51,13 @@ class BenchmarkSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
   test("every cell of the published set has settings"):
     for cell <- BenchmarkSet.Published.cells; entry <- BenchmarkSet.Published.entries do
       assertEquals(cell.settings(entry, 1).map(_.plans.size), Right(1))
+
+  test("without options, a program has the tasks of its scenarios, else its scenarios as tasks"):
+    val some  = Scenarios(ScenarioKind(Shadow()), ScenarioKind(Convoy()))
+    val tasks = BenchmarkSet.Published.tasksOf
+    assertEquals(tasks(Scenarios.ours), BenchmarkSet.Published.tasks)
+    assertEquals(tasks(some).map(_.name), Vector("shadow", "hidden-shadow"))
+    assertEquals(tasks(Scenarios(ScenarioKind(Convoy()))).map(_.name), Vector("convoy"))
 
   test("a user's policy is compared with the scenario's only in tasks with its role"):
     val file = Files.writeString(

@@ -5,6 +5,7 @@ import skein.search.{Conditions, WholeFlights}
 import skein.signal.LatencyDistribution
 import skein.testing.Optimised
 import skein.units.*
+import skein.vehicle.VehicleKind
 
 class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
   private given Scenarios = Scenarios.ours
@@ -41,6 +42,9 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
       // Tracks are evaluated every 20 ms, on lines between the positions of each period; a quantity once a
       // period.
       assertEqualsDouble(at(plain, latencyMs), at(both, latencyMs), 0.1 * at(plain, latencyMs))
+
+  test("cars alone, without an altitude, are judged"):
+    assert(at(subject(Cars()), 50) > 0)
 
   test("without latency the result equals the paused flight's, and more latency deviates further"):
     val plain = subject(surround)
@@ -105,6 +109,14 @@ final case class Whole() extends Scenario:
   def agents: Vector[skein.policy.Agent] = around.agents
   override def measures: Vector[Measure] =
     around.measures :+ Measure("lasts", "s")(tracks => Some(tracks.lastS))
+
+/** The two cars of [[Convoy]], alone. */
+final case class Cars(gapM: Double = 12) extends Scenario:
+  def agents: Vector[skein.policy.Agent] = Convoy(gapM).agents.filter(_.kind == VehicleKind.Car)
+  override def measures: Vector[Measure] = Vector(Series.of("gap", "m", Gap).mean("gap"))
+
+case object Gap extends Quantity:
+  def of(positions: Positions): Double = positions.distanceM(0, 1)
 
 /** Flies north until it is far enough, climbing: late commands overshoot. */
 final case class Drift(toM: Double = 12) extends Scenario:

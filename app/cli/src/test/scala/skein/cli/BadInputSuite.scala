@@ -1,6 +1,7 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
+import mainargs.ParserForClass
 import skein.policy.{Action, Agent, Policy, Observation}
 import skein.record.MemoryRecorder
 import skein.report.PaperReport
@@ -333,6 +334,31 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(ran.status != 0)
       assert(clue(ran.err).contains(s"got '${one.takeWhile(_ != ':')}:…'"))
       assert(!ran.said.contains("secret"))
+
+  folder.test("an MCAP file that exists already is not overwritten, in virtual time neither"): path =>
+    val file  = Files.writeString(path.resolve("stream-vpn.mcap"), "kept")
+    val words = "--loop stream --link vpn --record mcap --clock".split(' ').toSeq
+    for clock <- Seq("virtual", "real") do
+      assertRefused(FlyCommand(), words ++ Seq(clock, "--out", path.toString), s"$file exists already")
+    assertEquals(Files.readString(file), "kept")
+
+  folder.test("loops, wire and vehicle of a configuration may come from references and the environment"):
+    path =>
+      def loops(text: String, words: String*) =
+        val file = Files.writeString(path.resolve("fly.conf"), text).toString
+        ParserForClass[FlightOptions]
+          .constructOrThrow(words ++ Seq("--config", file))
+          .settings
+          .map(_.loops.map(_.label))
+      val others = List("sequential", "futures", "stream", "predictive")
+      val all    = "paused" :: others
+      assertEquals(loops("skein.fly.wire = mav${?NO_SUCH}link"), Right(others))
+      assertEquals(
+        loops("skein.fly { only = ${?NO_SUCH}, wire = ${?NO_SUCH}, loops = ${?NO_SUCH} }"),
+        Right(all)
+      )
+      assertEquals(loops("skein.fly.loops = ${?NO_SUCH}", "--mavlink"), Right(others))
+      assertEquals(loops("skein.fly.loops = ${skein.fly.loops} [plan]"), Right(all :+ "plan"))
 
   folder.test("a recording without vehicles is not replayed"): path =>
     val heading  = skein.report.SyntheticFlight("stream", "vpn", seed = 1, seconds = 12).heading

@@ -3,6 +3,7 @@ package skein.cli
 import java.io.{DataInput, DataOutput, IOException}
 import java.nio.file.{Files, Path}
 import skein.learn.{Learner, Network, Task}
+import skein.optimise.RunningStats
 import skein.policy.{Agent, Role, Surrounding}
 import skein.scenario.*
 import skein.search.Judge
@@ -26,7 +27,10 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     test(s"$algorithm teaches the $side, and writes a policy that can be read back"):
       val folder             = temporaryFolder().resolve("learned")
       val (status, out, err) =
-        run(Seq("--algorithm", algorithm, "--side", side, "--json", "--out", folder.toString) ++ short)
+        run(
+          Seq("--algorithm", algorithm, "--side", side, "--json", "--out", folder.toString) ++
+            (if algorithm == "ppo" then short.patch(short.indexOf("--updates-per-step"), Nil, 2) else short)
+        )
       assertEquals(status, 0, err)
       assert(err.contains("engine: SIMD, "), err)
       val rows = ujson.read(out)("tables")(0)("rows").arr
@@ -105,6 +109,9 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     )
     val (same, told) = flown("replay", file.toString)
     assertEquals(same, 0, told)
+    val (packed, reason) = flown(flight ++ "--loop predictive --plan-in-packet --out no".split(' ')*)
+    assertEquals(packed, 1, reason)
+    assert(reason.contains("--plan-in-packet: expected policies that do not learn in flight"), reason)
     val (refused, why) = flown(flight ++ Seq("--learn-noise", "2", "--out", folder.resolve("not").toString)*)
     assertEquals(refused, 1, why)
     assert(why.contains("--learn-noise: expected 0.0 to 1, got 2.0"), why)
@@ -174,6 +181,20 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(status, 1, err)
     assert(clue(err).contains(s"--resume: $link no longer holds what it held when learning began"))
 
+  test("learning whose baseline another program scored otherwise does not continue"):
+    val folder   = temporaryFolder()
+    val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
+    val setup    = question.setup.fold(fail(_), identity)
+    LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => 0L)
+      .run(LearnState(), 1, () => true)(_ => ())
+      .fold(fail(_), learned => assertEquals(learned.state.rounds, 0))
+    val file  = LearnFile.read(folder).fold(fail(_), identity)
+    val other = file.copy(probe = file.probe.map(_ => RunningStats.of(4)(_ + 0.5)))
+    assertEquals(LearnFile.write(folder, other, Numbers(isFull = false)), Right(()))
+    val (status, _, err) = run(Seq("--resume", folder.toString))
+    assertEquals(status, 1, err)
+    assert(clue(err).contains("they scored 2.0 when learning began: expected the program of that time"))
+
   test("an exception of user code during learning is reported, and the best policy so far is kept"):
     object Own extends SkeinApp(ScenarioKind(LearnedUntilItFails()))
     val folder = temporaryFolder().resolve("learned")
@@ -185,6 +206,10 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assert(clue(line).startsWith(s"skein learn: $why (LearnCommandSimulation.scala:"))
     assert(clue(ran.out).contains(s"the best policy until then: $folder/policy.conf"))
     assert(PolicyFile.read(folder.resolve("policy.conf").toString).isRight)
+
+  test("where a scenario's first vehicle is a car, learners fly at the altitude of its multirotors"):
+    val words = "--scenario convoy --objective off-places".split(' ').toSeq
+    assertEquals(LearnCommand.question(LearnOptionsOf(words)).map(_.conditions.altitudeM), Right(10.0))
 
   test("an impossible learning task is refused in a line"):
     def refused(expected: String, words: String*) =
@@ -227,21 +252,18 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       team("surround", "off-ring") ++ "--set vehicles=4 --set vehicles=6".split(' ')*
     )
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
+    refused(
+      "--updates-per-step: expected with sac or ddpg, got ppo",
+      "--algorithm",
+      "ppo",
+      "--updates-per-step",
+      "1"
+    )
 
   folder.test("on a full disk the learner's previous file is kept"): path =>
-    final class Numbers(isFull: Boolean) extends Learner:
-      def actor: Network                                                     = ???
-      def begin(round: Long): Unit                                           = ()
-      def explore(seen: Array[Float], actions: Array[Float]): Unit           = ()
-      def learn(seen: Array[Float], actions: Array[Float], task: Task): Unit = ()
-      def isFinite: Boolean                                                  = true
-      def load(in: DataInput): Unit                                          = ()
-      def save(out: DataOutput): Unit                                        =
-        out.write(new Array[Byte](4_000_000))
-        if isFull then throw IOException("No space left on device")
     val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
     def written(rounds: Int, isFull: Boolean) =
-      LearnFile.write(path, question, LearnState(rounds), Map.empty, Numbers(isFull))
+      LearnFile.write(path, LearnFile(LearnFile.Version, question, LearnState(rounds)), Numbers(isFull))
     assertEquals(written(1, isFull = false), Right(()))
     assert(clue(written(
       2,
@@ -291,6 +313,18 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     Files.writeString(json, edited): Unit
     assert(clue(LearnFile.read(folder)).left.exists(_.contains("damaged or edited")))
 
+/** @param isFull whether the disk is full when its numbers are written */
+private final class Numbers(isFull: Boolean) extends Learner:
+  def actor: Network                                                     = ???
+  def begin(round: Long): Unit                                           = ()
+  def explore(seen: Array[Float], actions: Array[Float]): Unit           = ()
+  def learn(seen: Array[Float], actions: Array[Float], task: Task): Unit = ()
+  def isFinite: Boolean                                                  = true
+  def load(in: DataInput): Unit                                          = ()
+  def save(out: DataOutput): Unit                                        =
+    out.write(new Array[Byte](4_000_000))
+    if isFull then throw IOException("No space left on device")
+
 private def LearnOptionsOf(words: Seq[String]): LearnOptions =
   mainargs.ParserForClass[LearnOptions].constructOrThrow(words)
 
@@ -307,5 +341,5 @@ case object BreaksLate extends Quantity:
 
   def of(positions: Positions): Double =
     calls += 1
-    if calls >= 1500 then throw IllegalStateException("no such luck")
+    if calls >= 2000 then throw IllegalStateException("no such luck")
     positions.distanceM(0, 1)

@@ -33,6 +33,8 @@ class MarginOptionsSuite extends munit.FunSuite:
         ) ++ program) -> "--settings: expected without --scenario",
         (Seq("--scenario", "duel", "--link", "vpn", "--link", "vpn") ++ program) ->
           "--link, --delays: expected each link once, got 'vpn' twice",
+        (Seq("--scenario", "duel", "--link", "none") ++ program) ->
+          "--link: expected one with latency, got none alone",
         (Seq("--scenario", "duel", "--repeats", "0") ++ program) -> "--repeats: expected 1 to 100, got 0",
         (Seq("--scenario", "duel", "--skip", "60s") ++ program)  ->
           "--skip: expected less than the 60 s of --seconds, got '60s'",

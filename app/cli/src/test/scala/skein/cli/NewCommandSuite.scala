@@ -27,6 +27,11 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     assert(Files.isExecutable(project.resolve("skein")))
     assert(Files.readString(project.resolve("build.sbt")).contains("ridge-watch"))
 
+  test("a name of a flight's setting is refused, since the scenario could not be flown"):
+    val (status, said) = run("seed")
+    assertEquals(status, 1)
+    assert(clue(said).contains("that is no setting of flights, got 'seed'; for example seed-flight"))
+
   folder.test("the printed commands can be typed into a shell, whatever the folder's name"): folder =>
     for (name, typed) <- Seq("ridge" -> s"$folder/ridge", "my 'own' ü" -> s"'$folder/my '\\''own'\\'' ü'") do
       val (status, told) = run("ridge-watch", "--out", s"$folder/$name")

@@ -116,7 +116,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
         Span.ofMillis(100),
         seed = 5
       )
-      assert(VirtualFlights.fly(settings, settings.plans, folder)((_, _) => ()).isRight)
+      assert(VirtualFlights.fly(settings, settings.plans, folder)((_, _) => ()).missing.isEmpty)
       folder
     ,
     path =>
@@ -200,6 +200,33 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     val (unfit, _, reason) = run(IdentifyCommand(), folder.resolve("paused-none.duckdb").toString)
     assertEquals(unfit, 1)
     assert(reason.contains("expected"), reason)
+
+  recordings.test("a vehicle's name that no recording has is refused, also beside one that a recording has"):
+    folder =>
+      val names            = Seq("--vehicle", "Pursuer", "--vehicle", "Evadr")
+      val (status, _, err) = run(IdentifyCommand(), names :+ folder.resolve("stream-vpn.duckdb").toString*)
+      assertEquals(status, 1)
+      assert(clue(err).contains("--vehicle: expected one of ") && err.endsWith(", got Evadr\n"))
+
+  folder.test("replay names every file that cannot be read"): folder =>
+    val files = Seq("one.txt", "other.txt").map(name => Files.writeString(folder.resolve(name), "x").toString)
+    val (status, _, err) = run(ReplayCommand(), files*)
+    assertEquals(status, 1)
+    for file <- files do assert(clue(err).contains(s"$file is not a recording"))
+
+  folder.test("a fitted link does not change the round trips of an earlier one"): folder =>
+    def fitted(firstMs: Int) =
+      val trips = Vector.tabulate(40)(number => s"$number,${firstMs + number}").mkString("\n")
+      val file  = Files.writeString(folder.resolve(s"from-$firstMs.csv"), s"time_s,rtt_ms\n$trips\n")
+      run(LinkFitCommand, file.toString, "--out", folder.resolve("link").toString)
+    val measured = folder.resolve("link/round-trips.txt")
+    assertEquals(fitted(20)._1, 0)
+    val before           = Files.readString(measured)
+    val (status, _, err) = fitted(90)
+    assertEquals(status, 1)
+    assert(clue(err).contains(s"--out: $measured holds other round trips"))
+    assertEquals(Files.readString(measured), before)
+    assertEquals(fitted(20)._1, 0)
 
   recordings.test("a flight that is listed twice, or copied, is fitted only once"): folder =>
     val flight               = folder.resolve("stream-vpn.duckdb")

@@ -1,6 +1,8 @@
 package skein.cli
 
 import skein.gpu.CudaGpu
+import skein.optimise.RunningStats
+import skein.search.SearchFile
 import skein.testing.{Optimised, TemporaryFolders}
 
 class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
@@ -31,6 +33,26 @@ class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     for why <- CudaGpu.find().left do
       val (status, told) = refused()
       assert(status != 0 && told.contains(s"--gpu: $why"), told)
+
+  test("a search whose defaults another program scored otherwise is not continued"):
+    val folder             = temporaryFolder().resolve("found")
+    def ran(words: String) = Ran.of(Main.run(s"search $words $folder".split(' ').toSeq))
+    assertEquals(ran("--candidates 4 --episodes 1 --population 4 --fresh 2 --duration 12s --out").status, 0)
+    val file                  = SearchFile.read(folder).fold(fail(_), identity)
+    def again(of: SearchFile) =
+      assertEquals(SearchFile.write(folder, of), Right(()))
+      ran("--resume")
+    val other = again(file.copy(probe = file.probe.map(_ => RunningStats.of(4)(_ + 0.5))))
+    assertEquals(other.status, 1)
+    assert(
+      clue(other.err).contains("they scored 2.0 when the search began: expected the program of that time")
+    )
+    for same <- Seq(file, file.copy(probe = Vector.empty)) do assertEquals(again(same).status, 0)
+
+  test("a population is refused with methods that have no generations"):
+    val ran = Ran.of(Main.run("search --method grid --population 20".split(' ').toSeq))
+    assertEquals(ran.status, 1)
+    assert(clue(ran.err).contains("--population: expected with cma-es or cross-entropy, got grid"))
 
   test("without an objective, the scenario's measures are listed"):
     val ran = Ran.of(Main.run(Seq("search", "--scenario", "crossing", "--vary", "lane-m=4..8")))

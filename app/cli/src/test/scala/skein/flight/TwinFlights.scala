@@ -37,8 +37,9 @@ object TwinFlights:
       val plans  = settings.plans
       val repeat = plans.flatMap(_.twins(twins))
       for
-        _       <- flyLive(settings, plans, folder)
-        _       <- VirtualFlights.fly(settings, repeat, folder)((_, _) => ())
+        _ <- flyLive(settings, plans, folder)
+        missing = VirtualFlights.fly(settings, repeat, folder)((_, _) => ()).missing
+        _       <- Expect.that(missing.isEmpty)(NotFlown.message(missing, repeat.size))
         flights <- Report.read((plans ++ repeat).map(_.file(folder))).left.map(_.mkString("\n"))
       yield flights
 

@@ -1,6 +1,7 @@
 package skein.search
 
 import com.typesafe.config.ConfigFactory
+import skein.budget.Cars
 import skein.optimise.{Evaluator, ScenarioTerm, Search, SearchState}
 import skein.scenario.*
 import skein.settings.ScenarioSettings
@@ -54,6 +55,24 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
       ).sum / 3
     )
     assertEqualsDouble(lanes.mean, means(0) + 0.05 * means(1), 2e-3)
+
+  test("the scenario is compared unchanged, also if its setting lies outside of the searched bounds"):
+    def baseline(least: Double) =
+      val ready = setup(question.copy(vary = Vector(Varied("ring-m", least, 20)), objective = "off-ring"))
+      val own   = ready.baseline.candidate
+      (ready.baseline.label, own, ready.judges(1)(Judge.Baseline).tallies(Vector(own), 0 until 2))
+    assertEquals(baseline(10), baseline(4))
+    assertEquals(baseline(10)._2, Vector(Surround().ringM))
+
+  test("settings of cars alone are searched, without an altitude"):
+    given Scenarios = Scenarios(ScenarioKind(Cars()))
+    val ready       =
+      question
+        .copy("cars", Map.empty, Vector(Varied("gap-m", 8, 16)), "gap", "grid", candidates = 4)
+        .setup
+        .fold(fail(_), identity)
+    val gaps = ready.judges(1)(Judge.Candidates).tallies(Vector(Vector(8.0), Vector(16.0)), 0 until 2)
+    assert(clue(gaps(0).mean) < clue(gaps(1).mean))
 
   test("a measure of whole flights is searched world by world, and the engine's line states that"):
     val vary  = Vector(Varied("lane-m", 2, 10), Varied("spacing-m", 4, 12))

@@ -68,7 +68,10 @@ private[scenario] final class ScenarioReader private (text: String):
     if first.head.isDigit then nodes.add(first, words, name => settings.indexWhere(_.name == name))
     else
       first match
-        case "name"    => only("name", words.key("a name"))
+        case "name" =>
+          val name = words.key("a name")
+          ScenarioNames.mistake(name).foreach(wrong(_))
+          only("name", name)
         case "note"    => only("note", words.text("a text", MostNote))
         case "scene"   => only("scene", words.name("a scene"))
         case "setting" =>

@@ -12,10 +12,6 @@ private[skein] object ScenarioText:
   def called(scenario: String): String =
     if isText(scenario) then read(scenario).fold(_ => ScenarioFile.Head, _.name) else scenario
 
-  /** The argument of `--scenario` for a scenario, as far as it is known. */
-  def fileOf(scenario: String): String =
-    if isText(scenario) then called(scenario) + ScenarioFile.Suffix else scenario
-
   @volatile private var last = Option.empty[(String, ScenarioKind[FileScenario])]
 
   /** Reads a file's text. Repeated calls with one text return one object, so that the scenario is compiled

@@ -30,6 +30,7 @@ final case class Scenarios(
     s"expected letters, digits and dashes as a scenario's name, got '${unspeakable.mkString}'"
   )
 
+  names.flatMap(ScenarioNames.mistake).foreach(why => throw IllegalArgumentException(why))
   PolicyFamily.mistake(families).foreach(why => throw IllegalArgumentException(why))
 
   val structures: Vector[Structure] = Structure.ours ++ ownStructures

@@ -176,6 +176,11 @@ object ScenarioFileSuite:
         "line 1: expected version 1, got '2'; a newer Skein may read it"
       ),
       ("another text", _ => "hello", "line 1: expected 'skein-scenario 1', got another first line"),
+      (
+        "the name of a flight's setting",
+        line("name patrol", "name seed"),
+        "line 3: expected a scenario's name that is no setting of flights, got 'seed'"
+      ),
       ("no text", _ => "", "line 1: expected 'skein-scenario 1', got another first line"),
       ("a node too many", line("6 sub 4 5", "7 sub 4 5"), "line 13: expected node 6, the next one, got '7'"),
       (

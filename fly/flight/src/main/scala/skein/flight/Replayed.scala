@@ -15,12 +15,14 @@ import skein.units.Expect
   *   moves
   * @param flownAgain the result of repeating the flight with physics and network; only for virtual time, a
   *   loop that the program knows and the built-in simulator
+  * @param notFlownAgain why such a flight could not be repeated
   */
 final case class Replayed(
     id: String,
     decisions: Int,
     decidedAgain: Option[Difference],
-    flownAgain: Option[FlownAgain]
+    flownAgain: Option[FlownAgain],
+    notFlownAgain: Option[String] = None
 ):
   def isSame: Boolean = decidedAgain.isEmpty && flownAgain.forall(_.isSame)
 
@@ -49,10 +51,15 @@ object Replayed:
       _ <- JointPlanning.of(flown.fleet, settings)
       decided = Replay(flown.fleet, recording, settings).firstDifference
       flight  = recording.flight
-      again <- Option.when(flight.isVirtual && flight.isBuiltIn)(flyAgain(file, recording, flown)) match
-        case None         => Right(None)
-        case Some(result) => result.map(Some(_))
-    yield Replayed(flight.id, recording.decisions.size, decided, again)
+      link    = Option.when(flight.isVirtual && flight.isBuiltIn)(RecordedPlan.linkOf(recording))
+      again <- Expect.each(link.filter(_.isRight))(_ => flyAgain(file, recording, flown))
+    yield Replayed(
+      flight.id,
+      recording.decisions.size,
+      decided,
+      again.headOption,
+      link.flatMap(_.left.toOption)
+    )
 
   /** Replays a flight of an unknown loop: its graph is not on record, so only its decisions are repeated. */
   private def ofUnknown(recording: Recording)(using Scenarios): Either[String, Replayed] =

@@ -26,17 +26,17 @@ object VirtualFlights:
   /** Simulates all flights, in parallel on all cores, and writes a recording of each into `folder`. Blocks.
     *
     * @param onLanded called with each flight when it has ended, on its thread, and with its records
-    * @return Left says which of them failed, and why; the recordings of the others are written
+    * @return the flights that failed, and the others, whose recordings are written
     */
   def fly(settings: FlySettings, plans: Vector[FlightPlan], folder: Path)(
       onLanded: (FlightResult, MemoryRecorder) => Unit
-  ): Either[String, Vector[FlightResult]] =
+  ): (missing: Vector[NotFlown], landed: Vector[FlightResult]) =
     val (missing, landed) = inParallel(settings, plans): flown =>
       val landed = flown.landed.copy(written = flown.recorder.writeTo(flown.landed.plan.file(folder)))
       onLanded(landed, flown.recorder)
       landed
     .partitionMap(identity)
-    Either.cond(missing.isEmpty, landed, NotFlown.message(missing, plans.size))
+    (missing, landed)
 
   /** Simulates all flights, in parallel on all cores, and keeps the result of `use` for each. Blocks.
     *

@@ -53,6 +53,10 @@ private[skein] object ConfigMistakes:
   def at(path: String, config: Config): String =
     if config.hasPath(path) then at(path, config.getValue(path).origin) else path
 
+  /** Whether a value at a path is set by an option, a file or the environment: it is no default. */
+  def isGiven(path: String, config: Config): Boolean =
+    config.hasPath(path) && !config.getValue(path).origin.description.startsWith(Ours)
+
   /** Joins the lines of a message, such as a library's exception message, into one line. */
   def oneLine(text: String): String = text.linesIterator.map(_.trim).filter(_.nonEmpty).mkString(" ")
 

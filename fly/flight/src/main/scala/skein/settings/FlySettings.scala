@@ -434,6 +434,9 @@ object FlySettings:
           s"expected loops that decide for each vehicle by itself (${Apart}), got ${loop.label}"
         )
         .orElse(Option.when(
+          settings.loops.forall(_ == LoopKind.Paused)
+        )("expected a loop other than paused, which has a single controller"))
+        .orElse(Option.when(
           settings.wire == Wire.Mavlink
         )("expected vehicles over AirSim's protocol, got mavlink"))
         .orElse(Option.when(settings.solver.isDefined)("expected no solver, which decides for all"))

@@ -1,5 +1,6 @@
 package skein.settings
 
+import scala.annotation.tailrec
 import skein.loop.{AnyLoop, LoopKind, PlanSettings, Replay}
 import skein.loop.learning.{Learning, LessonsAgain, LearnerUpdate}
 import skein.measure.RecordedScenario
@@ -7,10 +8,12 @@ import skein.policy.Fleet
 import skein.port.Moves
 import skein.record.{Event, EventKind, ParameterRow, Record, Recording}
 import skein.scenario.Scenarios
-import skein.signal.LatencyProfile
+import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.units.*
 
-/** The settings and plan of a recorded flight: enough to repeat it. */
+/** The settings and plan of a recorded flight: enough to repeat its decisions, and with
+  * [[RecordedPlan.linkOf its link]] to repeat the flight.
+  */
 final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
   /** The agents of the flight, for repeated decisions. */
   def fleet: Fleet =
@@ -33,6 +36,9 @@ object RecordedPlan:
 
   /** The parameter for the exploration of a policy that learned in flight. */
   private val Explore = "learningExplore"
+
+  /** The parameter for the round trips of a link that a file gives, in ms, one a line. */
+  private val Measured = "link.roundTripsMs"
 
   /** The prefix of a parameter that names the decision from which on a policy had other parameters. */
   private val Version = "version"
@@ -64,7 +70,26 @@ object RecordedPlan:
         ParameterRow(PolicyName, chosen.name),
         ParameterRow(s"$PolicyName.${PolicyFile.name(chosen.file.role)}", chosen.file.text)
       ) ++ chosen.learning.map(learning => ParameterRow(Explore, learning.explore.toString))
-    settings.written(ofFlight).filter(_.name != Replay.Fallback || deadline.isDefined) ++ ofPolicy
+    settings.written(ofFlight).filter(_.name != Replay.Fallback || deadline.isDefined) ++ ofPolicy ++
+      measured(plan.link).map(each => ParameterRow(Measured, each.mkString("\n")))
+
+  /** Round trips of a link that a file gives, ms. */
+  @tailrec private def measured(link: LatencyProfile): Option[Vector[Double]] = link.delays match
+    case LatencyProfile.Correlated(_, latency, _)     => measured(latency)
+    case LatencyProfile.Steady(s"file:$_", roundTrip) => roundTrip match
+        case LatencyDistribution.Quantiles(_, roundTripsMs) => Some(roundTripsMs)
+        case other                                          => Some(Vector(other.mean.toMillis))
+    case _ => None
+
+  /** The link of a recorded flight, by its recorded round trips; older recordings name a file alone.
+    *
+    * @return Left says why the link is not known
+    */
+  def linkOf(recording: Recording): Either[String, LatencyProfile] =
+    val recorded = recording.heading.parameters.find(_.name == Measured).map(_.value)
+    LatencyProfile
+      .parse(recording.flight.link, path => recorded.fold(TextFile.read(path))(Right(_)))
+      .left.map(_.message)
 
   /** The parameters of a flight's planning.
     *
@@ -73,7 +98,7 @@ object RecordedPlan:
   def parameters(planning: PlanSettings, predictor: Option[PredictionModel]): Seq[ParameterRow] =
     RecordedSetting.written(Planning, planning) ++ RecordedSetting.written(Predictor, predictor)
 
-  /** Reads the settings of a recording.
+  /** Reads the settings of a recording. A link that is not known, [[linkOf]], is none.
     *
     * @return Left says what is missing, or differs from what `skein fly` records
     */
@@ -82,12 +107,12 @@ object RecordedPlan:
     val parameters = recording.heading.parameters.map(parameter => parameter.name -> parameter.value).toMap
     for
       loop <- AnyLoop.parse(flight.loop)
-      link <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
       _    <- Expect.that(
         loop != LoopKind.Plan || Seq(Predictor, RecordedSetting.OlderPredictor).exists(parameters.contains)
       ):
         s"the recording has no parameter '$Predictor': by what model was planned is not known"
       scenario <- RecordedScenario.of(recording)
+      link    = linkOf(recording).getOrElse(LatencyProfile.none)
       columns = FlySettings(List(loop), List(link), flight.duration, flight.period, flight.seed, scenario)
       flown   <- settings.read(parameters, columns)
       _       <- Moves.mistake(flown.movesInFlight).map("its parameter 'movesInFlight': " + _).toLeft(())

@@ -59,7 +59,9 @@ object Briefing:
     plan.seed,
     settings.period,
     settings.duration,
-    RecordedPlan.parameters(settings, plan).toVector.map(one => (one.name, one.value)),
+    RecordedPlan.parameters(settings, plan.copy(link = LatencyProfile.none)).toVector.map(one =>
+      (one.name, one.value)
+    ),
     agents(plan.fleet(settings))
   )
 

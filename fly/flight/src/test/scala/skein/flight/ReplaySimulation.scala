@@ -1,10 +1,10 @@
 package skein.flight
 
-import java.nio.file.Path
+import java.nio.file.{Files, Path}
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
 import skein.record.*
 import skein.scenario.{Crossing, PaperDuel, Scenarios}
-import skein.settings.{FlightPlan, FlySettings, PredictionModel}
+import skein.settings.{FlightPlan, FlySettings, PredictionModel, TextFile}
 import skein.signal.LatencyProfile
 import skein.testing.{Optimised, TemporaryFolders}
 import skein.units.*
@@ -118,6 +118,28 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
         )
     val found = Replay(PaperDuel().fleet, recording.copy(readings = forged)).firstDifference
     assert(found.exists(_.column.endsWith("Sequence")), found.toString)
+
+  folder.test("a flight over measured round trips is repeated without their file, by those recorded"):
+    folder =>
+      val link     = Files.writeString(folder.resolve("link.txt"), "90\n70.25\n81\n")
+      val measured = LatencyProfile.parse(s"correlated:1s,loss:1%,file:$link", TextFile.read)
+        .fold(error => fail(error.message), identity)
+      val plan     = predictive.copy(link = measured)
+      val recorder = fly(settings, plan)
+      assert(recorder.writeTo(plan.file(folder)).isRight)
+      Files.delete(link)
+      val replayed = Replayed.of(plan.file(folder)).fold(fail(_), identity)
+      assertEquals(replayed.flownAgain.map(_.again), Some(recorder.digest))
+      // Older recordings have no round trips: only their decisions are repeated.
+      val heading = recorder.recording.heading
+      val older   =
+        MemoryRecorder(heading.copy(parameters = heading.parameters.filter(_.name != "link.roundTripsMs")))
+      recorder.records.foreach(older.offer)
+      val file = folder.resolve("older.duckdb")
+      assert(older.writeTo(file).isRight)
+      val decided = Replayed.of(file).fold(fail(_), identity)
+      assertEquals((decided.decidedAgain, decided.flownAgain), (None, None))
+      assert(clue(decided.notFlownAgain).exists(_.contains(s"there is no file $link")))
 
   folder.test("repeating a flight with another seed than the recorded one gives other decisions"): folder =>
     val plan     = predictive

@@ -1,16 +1,18 @@
 package skein.flight
 
+import java.nio.file.Files
 import java.util.concurrent.Executors
 import skein.loop.{LoopKind, FlightOutcome}
+import skein.policy.{Axis, PolicyFamily, Role, SearchSpace}
 import skein.record.Digest
-import skein.settings.{FlightPlan, FlySettings}
+import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile}
 import skein.signal.LatencyProfile
-import skein.testing.Unhurried
+import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.*
 import skein.vtime.{Problem, RunLimits, VirtualTimeException}
 
 /** Whole flights in virtual time repeat exactly. */
-class VirtualFlightSimulation extends munit.FunSuite, Unhurried:
+class VirtualFlightSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private val settings = FlySettings(
     List(LoopKind.Sequential, LoopKind.Stream),
@@ -63,6 +65,18 @@ class VirtualFlightSimulation extends munit.FunSuite, Unhurried:
     assert(message.startsWith("3 of 6 flights could not be flown"), message)
     for told <- Seq("seed 1: no link", "seed 3: java.lang.StackOverflowError: too deep", "seed 4: ") do
       assert(message.contains(told), message)
+
+  folder.test("flights that cannot be flown are named, and the others are recorded"): folder =>
+    val space  = SearchSpace(Vector(Axis("lead", 0, 1, 0.5)))
+    val broken = PolicyFamily("broken", "", Set(Role.Pursuer), space, _ => sys.error("no"))
+    val plan   = settings.plans.last
+    val other  = plan.copy(
+      id = "broken",
+      policy = Some(ChosenPolicy("broken", PolicyFile(Role.Pursuer, broken, space.defaults)))
+    )
+    val (missing, landed) = VirtualFlights.fly(settings, Vector(other, plan), folder)((_, _) => ())
+    assertEquals((missing.map(_.plan.id), landed.map(_.plan.id)), (Vector("broken"), Vector(plan.id)))
+    assert(Files.exists(plan.file(folder)))
 
   test("a missing agent of virtual time is reported in words, and any other error with its stack"):
     val missing = VirtualTimeException(Problem.NoAgent("Pekko reads the JVM's clock"))

@@ -2,9 +2,10 @@ package skein.settings
 
 import com.typesafe.config.ConfigFactory
 import java.nio.file.Files
+import scala.jdk.CollectionConverters.*
 import skein.loop.{Knowledge, LoopKind, Planning}
 import skein.policy.{PolicyFamily, Role}
-import skein.scenario.{PaperDuel, Scenarios, Surround}
+import skein.scenario.{PaperDuel, Scenario, ScenarioKind, ScenarioNames, Scenarios, Surround}
 import skein.signal.LatencyProfile
 import skein.testing.TemporaryFolders
 import skein.units.Span
@@ -21,6 +22,21 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     ).left.getOrElse("")
     assert(clue(said).contains("3: no setting 'skein.fly.crossing.minimum'; the nearest is 'minimum-m'"))
     assert(said.contains("4: no setting 'skein.fly.durration'; the nearest is 'duration'"))
+
+  test("no scenario can have the name of a flight's setting, beside which its own settings stand"):
+    val keys = ConfigFactory.defaultReference().getConfig("skein.fly").root.keySet.asScala.toSet
+    assertEquals(keys, ScenarioNames.Taken)
+    val taken = intercept[IllegalArgumentException](Scenarios(ScenarioKind(FlySettingsSuite.Seed())))
+    assertEquals(
+      taken.getMessage,
+      "expected a scenario's name that is no setting of flights, got 'seed'"
+    )
+
+  test("controllers of their own are refused with the paused loop alone, which has a single one"):
+    assert(clue(read("skein.fly { decentralised = true, loops = [paused] }")).left.exists(
+      _.contains("expected a loop other than paused")
+    ))
+    assert(read("skein.fly { decentralised = true, loops = [paused, stream] }").isRight)
 
   test("one name means one model, wherever it is named"):
     for name <- Seq("reduced", "drag", "quadrotor") do
@@ -311,3 +327,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
         "policies: expected with a scenario of a pursuer and vehicles of another role, got with 'formation'"
       )
     )
+
+object FlySettingsSuite:
+  final case class Seed() extends Scenario:
+    def agents = PaperDuel().agents

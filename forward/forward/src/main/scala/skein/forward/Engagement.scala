@@ -52,9 +52,6 @@ final case class Engagement(
   private def changed(role: Role)(change: RolloutAgent => RolloutAgent) =
     copy(agents = agents.zip(roles).map((agent, own) => if own == role then change(agent) else agent))
 
-  /** Altitude at which the first multirotor starts, m; 0 without one. */
-  def altitudeM: Double = agents.find(_.kind != VehicleKind.Car).fold(0.0)(-_.altitudeDownM)
-
   lazy val hasCars: Boolean = agents.exists(_.kind == VehicleKind.Car)
 
   /** The reason why some vehicle may turn or may leave the altitude of its start; None if all fly level. */
