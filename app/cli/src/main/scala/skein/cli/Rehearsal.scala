@@ -12,6 +12,6 @@ object Rehearsal:
     val commands = Files.readAllLines(Path.of(arguments.head)).asScala.toSeq.filter(_.nonEmpty)
     // A cache needs each class once; the virtual flights before the live ones have used those of a warm-up.
     FlyCommand.skipWarmUp()
-    val failed   = commands.filter(command => Main.run(command.split(' ').toSeq) != 0)
+    val failed = commands.filter(command => Main.run(command.split(' ').toSeq) != 0)
     failed.foreach(command => Console.err.println(s"skein: this failed: $command"))
     sys.exit(failed.size.min(1))

@@ -43,7 +43,9 @@ class TracksSuite extends munit.FunSuite:
     assertEquals(track.velocitiesNed.last, Vector3(0, 5, 0))
     assertEqualsDouble((track.velocitiesNed(1) - Vector3(2.0 / 3, 10.0 / 3, 0)).norm, 0, 1e-12)
     val falling = Vector(0.0, 0.7, 1.0, 2.5, 3.0).map(t => (s(t), Vector3(0, 0, 4.9 * t * t)))
-    for (at, velocity) <- falling.map(_._1).zip(Track.ofPositions("One", "Scout", falling).velocitiesNed).slice(1, 4) do
+    for (at, velocity) <-
+        falling.map(_._1).zip(Track.ofPositions("One", "Scout", falling).velocitiesNed).slice(1, 4)
+    do
       assertEqualsDouble(velocity.z, 9.8 * at.since(s(0)).toSeconds, 1e-9)
     assertEquals(
       Track.ofPositions("One", "Scout", Vector((s(0), Vector3.Zero))).velocitiesNed,

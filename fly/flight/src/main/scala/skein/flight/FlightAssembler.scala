@@ -144,8 +144,9 @@ final class FlightAssembler(
               case Wire.AirSim => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
               case Wire.Mavlink => overMavlink(plan, server, opened, monitor)
         _ <- packets(plan, reached)
-        _ <- Team.missingSensor(fleet, reached.vehicles, settings.own).fold(reached.ping().map(_ => ()))(missing =>
-          Future.failed(CannotFly(missing))
+        _ <- Team.missingSensor(fleet, reached.vehicles, settings.own).fold(reached.ping().map(_ => ()))(
+          missing =>
+            Future.failed(CannotFly(missing))
         )
       yield
         val loopSettings =

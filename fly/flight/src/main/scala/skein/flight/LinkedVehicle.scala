@@ -72,5 +72,7 @@ final class LinkedVehicle(
         val now = clock.now()
         val at  = now.since(begun)
         newest = newest.max(now + loss.delay(at, timeout) + sampler.oneWay(at))
-        last = last.zip(after(newest.since(now).toDuration)(Future.unit)).map(_ => passed.complete(Try(call)): Unit)
+        last = last.zip(after(newest.since(now).toDuration)(Future.unit)).map(_ =>
+          passed.complete(Try(call)): Unit
+        )
       passed.future.flatten

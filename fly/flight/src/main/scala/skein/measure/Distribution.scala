@@ -12,8 +12,8 @@ final case class Distribution private (sorted: Vector[Double]):
   /** Standard deviation of the samples themselves: divided by their number, not by one less. */
   def sd: Double = math.sqrt(squares / count)
 
-  /** Estimated standard deviation of what the samples are drawn from, such as flights with other seeds: divided
-    * by one less than their number. 0 for a single one.
+  /** Estimated standard deviation of what the samples are drawn from, such as flights with other seeds:
+    * divided by one less than their number. 0 for a single one.
     */
   def sampleSd: Double = if count == 1 then 0 else math.sqrt(squares / (count - 1))
 

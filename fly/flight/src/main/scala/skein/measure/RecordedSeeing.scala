@@ -11,8 +11,9 @@ import skein.units.*
   */
 object RecordedSeeing:
 
-  /** One result for each eye with a detection through a camera of its scenario. How many images an eye searched
-    * after its last detection is not recorded, so those do not count, nor does a flight without a detection.
+  /** One result for each eye with a detection through a camera of its scenario. How many images an eye
+    * searched after its last detection is not recorded, so those do not count, nor does a flight without a
+    * detection.
     */
   def of(recording: Recording)(using Scenarios): Vector[Seeing] =
     val summary = FlightSummary.of(recording)

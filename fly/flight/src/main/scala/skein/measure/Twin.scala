@@ -28,8 +28,8 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
       theirs <- Distribution.of(virtual.flatMap(_.headline))
     yield (ours, theirs.mean)
 
-  /** Deviation of the live flight's headline measure, as a fraction of the size of the twins' measure; None if
-    * that is 0.
+  /** Deviation of the live flight's headline measure, as a fraction of the size of the twins' measure; None
+    * if that is 0.
     */
   def difference: Option[Double] = converged.collect:
     case (ours, theirs) if theirs != 0 => (ours - theirs) / theirs.abs

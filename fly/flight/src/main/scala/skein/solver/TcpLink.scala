@@ -111,9 +111,9 @@ final class TcpLink(
       case None      => Left(whyDown)
       case Some(out) =>
         out.offer(ByteString.fromArrayUnsafe(message)) match
-          case QueueOfferResult.Enqueued                                => Right(())
+          case QueueOfferResult.Enqueued                                  => Right(())
           case QueueOfferResult.QueueClosed | QueueOfferResult.Failure(_) => Left(whyDown)
-          case QueueOfferResult.Dropped                                 => Left(s"$MostWaiting messages to $to wait already")
+          case QueueOfferResult.Dropped => Left(s"$MostWaiting messages to $to wait already")
 
     /** Closes the link; messages already accepted are sent first, if the other side reads them in time. */
     def close(): Future[Done] =

@@ -30,7 +30,8 @@ final class Conversation(connection: Int):
         Some(Passed.Answered(connection, id, failed, stampOf(result), answers.length, at))
       case _ => None
 
-  /** Whether a direction could not be parsed: the other alone would say which calls are awaited, or answered. */
+  /** Whether a direction could not be parsed: the other alone would say which calls are awaited, or answered.
+    */
   private var isLost = false
 
   /** The parser of one direction of the connection. */

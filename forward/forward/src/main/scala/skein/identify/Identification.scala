@@ -43,9 +43,9 @@ object Identification:
   val StartEveryS     = 0.5
   val DefaultHorizonS = 2.0
 
-  /** Length of a block, s: 5, or two and a half horizons. Errors of windows less than a horizon apart are those
-    * of common samples, so shorter blocks would make intervals too narrow: with blocks of one horizon by a
-    * fifth.
+  /** Length of a block, s: 5, or two and a half horizons. Errors of windows less than a horizon apart are
+    * those of common samples, so shorter blocks would make intervals too narrow: with blocks of one horizon
+    * by a fifth.
     */
   def blockS(horizonS: Double): Double = (2.5 * horizonS).max(5)
 

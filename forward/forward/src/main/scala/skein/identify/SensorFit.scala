@@ -53,11 +53,11 @@ object SensorFit:
     else Right(fit(seeing, all))
 
   private def fit(seeing: Vector[Seeing], all: Vector[Detected]): SensorFit =
-    val n        = all.size
-    val bearing  = math.sqrt(all.map(one => one.bearingErrorRad * one.bearingErrorRad).sum / n)
-    val ratios   = all.map(one => one.rangeM / one.trueRangeM)
-    val bias     = ratios.sum / n
-    val rangeSd  = math.sqrt(ratios.map(ratio => (ratio - bias) * (ratio - bias)).sum / (n - 1)) / bias
+    val n       = all.size
+    val bearing = math.sqrt(all.map(one => one.bearingErrorRad * one.bearingErrorRad).sum / n)
+    val ratios  = all.map(one => one.rangeM / one.trueRangeM)
+    val bias    = ratios.sum / n
+    val rangeSd = math.sqrt(ratios.map(ratio => (ratio - bias) * (ratio - bias)).sum / (n - 1)) / bias
     // The model detects nothing beyond the farthest detection.
     val farthest = all.map(_.trueRangeM).max
     val inView   = seeing.map: one =>

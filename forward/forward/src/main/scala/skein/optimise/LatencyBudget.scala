@@ -53,8 +53,8 @@ object LatencyBudget:
 
   /** The mean latency up to which deviations stay within a tolerance to either side, by linear interpolation.
     *
-    * @param known mean latencies, ms, ascending, each with its deviation, which is infinite or NaN if there is
-    *   no value
+    * @param known mean latencies, ms, ascending, each with its deviation, which is infinite or NaN if there
+    *   is no value
     */
   def holdsUpTo(known: Vector[(Double, Double)], tolerance: Double): Bound =
     known.indexWhere((_, off) => !(off.abs <= tolerance)) match

@@ -45,7 +45,8 @@ final case class ReportedMotion(
 
   private def withNewest(state: Kinematics, at: Instant): (ReportedMotion, Boolean) =
     def isLater(last: Instant) = at > last || last.since(at) > Restart
-    if state.isFinite && newest.forall(one => isLater(one.at)) then (copy(newest = Some((state = state, at = at))), true)
+    if state.isFinite && newest.forall(one => isLater(one.at)) then
+      (copy(newest = Some((state = state, at = at))), true)
     else (this, false)
 
 /** Messages do not overtake by so much: a vehicle's clock that is set back by more has begun anew. */

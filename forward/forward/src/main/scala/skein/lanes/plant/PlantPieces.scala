@@ -7,8 +7,8 @@ import skein.vehicle.PlantTiming
 /** A plant's motion during one step, in worlds whose steps begin at different times. Compiled once for all
   * plants of a form. The stored components of a step are: the command north and east, divided by the speed,
   * and in space its vertical part; the state at the start of the step; and the vehicle's start, unless the
-  * state contains it. A command of −∞ north makes a vehicle rest; one
-  * of NaN makes its state NaN, as in the scalar engine.
+  * state contains it. A command of −∞ north makes a vehicle rest; one of NaN makes its state NaN, as in the
+  * scalar engine.
   *
   * @param places indices of the state's components that initially equal the vehicle's start, north and east;
   *   None if there are none
@@ -78,7 +78,7 @@ private[lanes] object PlantPieces:
 
   /** The command north of a vehicle that rests. */
   val Rests: Float = Float.NegativeInfinity
-  val East: Int  = 1
-  val Third: Int = 2
-  val Holds: Int = 3
-  val Since: Int = 1 << 16
+  val East: Int    = 1
+  val Third: Int   = 2
+  val Holds: Int   = 3
+  val Since: Int   = 1 << 16
