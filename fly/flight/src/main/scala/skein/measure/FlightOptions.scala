@@ -47,4 +47,4 @@ private[measure] object FlightOptions:
   /** The value, with a digest of a scene that a file describes. */
   private def valued(recording: Recording, name: String, value: String): String =
     val text = recording.heading.parameter(s"$name.text")
-    value + text.fold("")(text => f" (${text.hashCode}%08x)")
+    value + text.fold("")(text => s" (${Integer.toHexString(text.hashCode)})")

@@ -64,7 +64,7 @@ private[record] object RecordingFile:
     */
   def create(file: Path, heading: RecordingHeader): Either[RecordError, RecordingFile] =
     free(file).flatMap: _ =>
-      val begun = attempt(RecordError.CannotCreate(file, _)):
+      attempt(RecordError.CannotCreate(file, _)):
         val connection = connect(file, readOnly = false)
         try
           createTables(connection)
@@ -76,17 +76,19 @@ private[record] object RecordingFile:
         catch
           case failure: SQLException =>
             val _ = Try(connection.close())
+            discard(file)
             throw failure
       .flatMap: opened =>
         val written = opened.write(heading.records)
         if written.isLeft then
           val _ = opened.close()
+          discard(file)
         written.map(_ => opened)
-      // What was begun on a full disk would prevent the next attempt.
-      if begun.isLeft then
-        for ending <- Seq("", ".wal") do
-          val _ = Try(Files.deleteIfExists(file.resolveSibling(s"${file.getFileName}$ending")))
-      begun
+
+  /** Deletes what was begun, for example on a full disk: it would prevent the next attempt. */
+  private def discard(file: Path): Unit =
+    for ending <- Seq("", ".wal") do
+      val _ = Try(Files.deleteIfExists(file.resolveSibling(s"${file.getFileName}$ending")))
 
   /** Checks whether a recording can have this name; Left says why it cannot. */
   def free(file: Path): Either[RecordError, Unit] =
