@@ -223,7 +223,7 @@ def test_a_forked_process_is_told_that_java_does_not_live_on_there(make):
     import warnings
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # that this process has threads is the point
+        warnings.simplefilter("ignore")  # that this process has threads is the point; JAX warns of it, too
         child = os.fork()
     if child == 0:
         try:
@@ -354,7 +354,7 @@ def test_behind_a_socket_it_is_the_same_in_forked_processes_too(make):
         import warnings
 
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)
+            warnings.simplefilter("ignore")
             child = os.fork()
         if child == 0:
             try:
