@@ -21,9 +21,10 @@ object Jvm {
   val oneCollector: Seq[String] = Seq("-XX:+UseSerialGC")
 
   /** For tests, most of which end before optimising compilation pays: a third to a half less of the
-    * processor's time.
+    * processor's time. Then there is little memory for compiled code, and full collections when it fills.
     */
-  val brief: Seq[String] = oneCollector :+ "-XX:TieredStopAtLevel=1"
+  val brief: Seq[String] =
+    oneCollector ++ Seq("-XX:TieredStopAtLevel=1", "-XX:ReservedCodeCacheSize=256m", "-XX:MetaspaceSize=128m")
 
   /** For the module whose Java sources use the vector API. */
   val vectorModule: Seq[Setting[?]] = Seq(Compile / javacOptions ++= vector)
