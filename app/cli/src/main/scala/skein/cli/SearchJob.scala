@@ -16,7 +16,7 @@ private[cli] final class SearchJob(
 ):
   import SearchJob.*
 
-  private val probe = VerifiedQuestion.probe(ready.acceleratedBy(None))
+  private val probe = ready.probe
 
   /** Notes the engine of each candidate, to report those that did not use the expected one. */
   private val candidates = NotedEvaluator(runner(Judge.Candidates), ready.engine(_, Judge.Candidates))

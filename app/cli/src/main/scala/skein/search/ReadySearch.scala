@@ -79,6 +79,12 @@ final case class ReadySearch(
   export question.{link, method}
   export searched.{baseline, label, name, scenario, space, subject}
 
+  /** The defaults' result on the first episodes, by this process without an accelerator: another program, or
+    * another build, is known by it.
+    */
+  lazy val probe: Vector[RunningStats] =
+    acceleratedBy(None).judges(1)(Judge.Candidates).tallies(Vector(space.defaults), ReadySearch.Probes)
+
   val search: Search =
     val leastPlayOff = if isVirtual then ReadySearch.LeastPlayOff else Search.LeastPlayOff
     Search(space, by, objective.direction, seed, leastPlayOff)
@@ -179,6 +185,7 @@ final case class ReadySearch(
   def measure: String = objective.title
 
 object ReadySearch:
+  private val Probes    = 0 until 4
   private val ShareFrom = 256
 
   /** Minimum number of candidates in the play-off when flights are slow. */

@@ -6,7 +6,7 @@ import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson}
 /** A search on disk: its question, and its current state.
   *
   * @param files [[NamedFiles.digests]] of the names in the question
-  * @param probe [[VerifiedQuestion.probe]] of the program that wrote it; empty in older files
+  * @param probe [[ReadySearch.probe]] of the program that wrote it; empty in older files
   */
 final case class SearchFile(
     version: Int,

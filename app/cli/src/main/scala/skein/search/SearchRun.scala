@@ -6,7 +6,7 @@ import skein.optimise.{Evaluator, RunningStats, Search, SearchState}
 /** Runs a search to its end, or until it is stopped, and keeps its state on disk: killing the process loses a
   * few seconds.
   *
-  * @param probe [[VerifiedQuestion.probe]], which a later program compares with its own
+  * @param probe [[ReadySearch.probe]], which a later program compares with its own
   */
 final class SearchRun(
     search: Search,

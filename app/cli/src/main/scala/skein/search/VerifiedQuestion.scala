@@ -18,12 +18,6 @@ object VerifiedQuestion:
   import SearchFile.given
   private given ReadWriter[VerifiedQuestion] = ReadWriter.derived
 
-  private val Probes = 0 until 4
-
-  /** The defaults' result on the first episodes, by this process. */
-  def probe(ready: ReadySearch): Vector[RunningStats] =
-    ready.judges(1)(Judge.Candidates).tallies(Vector(ready.space.defaults), Probes)
-
   /** Refuses to mix results of two programs.
     *
     * @param before the probe of the program that began; empty if it kept none
@@ -39,14 +33,14 @@ object VerifiedQuestion:
         s"when $began began: expected the program of that time, or to begin anew"
 
   def bytes(ready: ReadySearch): ArraySeq[Byte] =
-    JsonText.bytes(VerifiedQuestion(ready.question, probe(ready)))
+    JsonText.bytes(VerifiedQuestion(ready.question, ready.probe))
 
   /** Answers search questions about the scenarios known to this process. */
   def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       posed <- JsonText.read[VerifiedQuestion](asked, "a search's question")
       ready <- posed.question.setup
-      came = probe(ready)
+      came = ready.probe
       _ <- Expect.that(RunningStats.areSame(came, posed.probe)):
         s"the defaults come to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
           "has a file that --link, --plant or --opponent names another content here?"

@@ -170,7 +170,7 @@ final case class LearnSetup(
     judge => if judge == Judge.Baseline then own else learned
 
   /** The baseline's result on the first episodes, by this process. */
-  def probe: Vector[RunningStats] =
+  lazy val probe: Vector[RunningStats] =
     judges(threads = 1)(Judge.Baseline).tallies(Vector(baseline.candidate), LearnSetup.Probes)
 
   /** The engine of the episodes while it learns; Left says what was expected and what was given. */

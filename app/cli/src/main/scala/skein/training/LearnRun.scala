@@ -34,8 +34,7 @@ final class LearnRun(
   import LearnRun.*
   import setup.question
 
-  private val files      = LearnFile.files(question)
-  private lazy val probe = setup.probe
+  private val files = LearnFile.files(question)
 
   /** @param isStopped checked at every step; true abandons the current round
     * @param onRound called with every state
@@ -90,7 +89,7 @@ final class LearnRun(
       judged()
       folder.fold(Right(()))(LearnFile.write(
         _,
-        LearnFile(LearnFile.Version, question, state, files, probe),
+        LearnFile(LearnFile.Version, question, state, files, setup.probe),
         learner
       ))
     var savedAt = nanoTime()
