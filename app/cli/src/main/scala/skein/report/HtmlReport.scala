@@ -82,34 +82,20 @@ object HtmlReport:
     (SummaryTables.remarks(set) ++ TimingVerdict.sentence(set)).map(line => p(cls := "note", strong(line)))
 
   private def parameters(set: FlightSet): TextTable =
-    TextTable(
-      Vector(
-        "<flight",
-        "<loop",
-        "<link",
-        "seed",
-        "period ms",
-        "duration s",
-        "<clock",
-        "<simulator",
-        "<scenario"
-      ) ++
-        Vector("<version", "<started (UTC)"),
-      (set.flights ++ set.twins.flatMap(_.virtual)).distinctBy(_.flight).map: summary =>
-        import summary.flight
-        Vector(
-          flight.id,
-          flight.loop,
-          flight.link,
-          flight.seed.toString,
-          flight.period.toMillis.brief,
-          flight.duration.toSeconds.brief,
-          flight.clock,
-          summary.simulator,
-          flight.scenario,
-          flight.version,
-          java.time.Instant.ofEpochSecond(flight.startedAt.toNanos / 1_000_000_000L).toString
-        )
+    TextTable.of((set.flights ++ set.twins.flatMap(_.virtual)).distinctBy(_.flight))(
+      "<flight"        -> (_.flight.id),
+      "<loop"          -> (_.flight.loop),
+      "<link"          -> (_.flight.link),
+      "seed"           -> (_.flight.seed.toString),
+      "period ms"      -> (_.flight.period.toMillis.brief),
+      "duration s"     -> (_.flight.duration.toSeconds.brief),
+      "<clock"         -> (_.flight.clock),
+      "<simulator"     -> (_.simulator),
+      "<scenario"      -> (_.flight.scenario),
+      "<version"       -> (_.flight.version),
+      "<started (UTC)" -> (flown =>
+        java.time.Instant.ofEpochSecond(flown.flight.startedAt.toNanos / 1_000_000_000L).toString
+      )
     )
 
   private val style =
