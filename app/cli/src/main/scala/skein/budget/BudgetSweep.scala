@@ -39,7 +39,7 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
   ): Either[String, LatencyBudget] =
     for
       truth <- subject.truth(episodes)
-      per   <- tolerance.per(truth).left.map(mistake => s"${subject.formula}: $mistake")
+      per   <- tolerance.per(truth).left.map(mistake => s"${subject.task.formula}: $mistake")
       rows  <- rowsFrom(Vector.empty, onProgress, isCancelled, onRow)
     yield LatencyBudget(axes.meansMs, axes.jittersMs.take(rows.size), rows, truth, per)
 

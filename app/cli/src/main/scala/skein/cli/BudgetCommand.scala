@@ -86,7 +86,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       cluster   <- options.cluster.checked
       questions <- Expect.all(periods)(question(options, _)).map(_.toVector)
       subjects  <- Expect.all(questions)(_.subject(threads)).map(_.toVector)
-      _         <- Expect.that(subjects.forall(_.loop != LoopKind.Paused.label)):
+      _         <- Expect.that(subjects.forall(_.task.loop != LoopKind.Paused.label)):
         "--loop: the paused loop is the truth and feels no latency; expected another"
       folder <- OutFolder.made("--out", options.out)
       _      <- OutFolder.alone(folder):
@@ -111,7 +111,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     val shown = Shown(options.json.value)
     if options.json.value then Console.out.println(BudgetMap.json(maps, atJitterMs))
     for map <- maps do
-      shown.say(s"${map.policy}: ${map.sentence(atJitterMs)}")
+      shown.say(s"${map.task.label}: ${map.sentence(atJitterMs)}")
       map.markLines.foreach(line => shown.say(s"  $line"))
 
   private def question(options: BudgetOptions, period: Span): Either[String, BudgetQuestion] =
@@ -202,11 +202,12 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):
       def mapOf(subject: BudgetSubject) =
-        val what  = s"${subject.loop} every ${subject.periodMs.significant(4)} ms"
+        import subject.task
+        val what  = s"${task.loop} every ${task.periodMs.significant(4)} ms"
         val sweep = BudgetSweep(subject, axes, tolerance, options.episodes)
         shown.say(
-          s"$what, ${subject.vehicles}\n" +
-            s"${sweep.episodes} episodes of ${subject.durationS.significant(4)} s in each of " +
+          s"$what, ${task.vehicles}\n" +
+            s"${sweep.episodes} episodes of ${task.durationS.significant(4)} s in each of " +
             s"${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
         )
         val startedAt = System.nanoTime()
@@ -221,12 +222,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
             Expect.all(if stopped then Nil else BudgetCommand.Marked): (name, roundTrip) =>
               sweep.over(roundTrip).map(BudgetMark(name, roundTrip, _))
         yield BudgetMap(
-          subject.loop,
-          subject.periodMs,
-          subject.formula,
-          subject.unit,
-          subject.vehicles,
-          subject.label,
+          subject.task,
           sweep.engine,
           tolerance,
           sweep.episodes,

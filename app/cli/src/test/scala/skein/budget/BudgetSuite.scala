@@ -61,12 +61,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     assertEquals(cut, Right(whole.copy(jittersMs = whole.jittersMs.take(2), cells = whole.cells.take(2))))
 
   private def shown(bound: Vector[Double], legs: Legs = Legs.RoundTrip) = BudgetMap(
-    "stream",
-    100,
-    "last10s",
-    "m",
-    "ideal",
-    "paper-pursuer",
+    BudgetTask("stream", 100, 60, "ideal", "paper-pursuer", "last10s", "m"),
     Engine(Engine.Kind.Lanes, "SIMD"),
     Tolerance.Share(0.05),
     1,
