@@ -42,12 +42,15 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
   def level(value: Double, stroke: Stroke): Mark =
     Mark.line(Point(left, atY(value)), Point(right, atY(value)), stroke)
 
+  /** A vertical line from the upper edge to the lower one. */
+  def upright(value: Double, stroke: Stroke): Mark =
+    Mark.line(Point(atX(value), top), Point(atX(value), bottom), stroke)
+
   /** Grid, lines, numbers and names of both axes; to be painted below the values. */
   def axes: Vector[Mark] = grid ++ xAxis ++ yAxis
 
   private def grid: Vector[Mark] =
-    x.ticks.map(tick => Mark.line(Point(atX(tick), top), Point(atX(tick), bottom), gridLine)) ++
-      rules(left, right)
+    x.ticks.map(upright(_, gridLine)) ++ rules(left, right)
 
   /** Horizontal lines at the ticks of the vertical axis. */
   def rules(from: Double, to: Double): Vector[Mark] =
