@@ -2,10 +2,8 @@ package skein.cli
 
 import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
-import org.apache.pekko.actor.ActorSystem
 import skein.airsim.{Vehicles, WorldSettings}
 import skein.budget.Tolerance
-import skein.link.TransportError
 import skein.margin.*
 import skein.report.{Paragraph, Section}
 import skein.scenario.{Scenario, Scenarios}
@@ -71,7 +69,7 @@ final case class MarginOptions(
 
 /** `./skein margin`: measures the delay margin of any program that flies vehicles by AirSim's interface. */
 final class MarginCommand(using scenarios: Scenarios)
-    extends OptionsCommand[MarginOptions](
+    extends Command[MarginOptions](
       "margin",
       "says how much latency any AirSim program tolerates, by running it over one link after the other",
       ParserForClass[MarginOptions]
@@ -170,25 +168,24 @@ final class MarginCommand(using scenarios: Scenarios)
     yield ()
 
   private def fly(asked: Asked, options: MarginOptions, folder: Path): Either[String, Unit] =
-    given system: ActorSystem = ActorSystem("skein")
-    val shown                 = Shown(options.json.value)
-    val count                 = (asked.links.size + 1) * options.repeats
-    val most                  = count.toLong * options.seconds / asked.atOnce
-    shown.say(
-      s"$count runs of up to ${options.seconds} s, ${MarginTables.atOnce(asked.atOnce)}: " +
-        s"up to ${(most / 60.0).brief} min"
-    )
-    val trial = MarginTrial(
-      asked.command,
-      asked.world,
-      asked.scene.scene,
-      asked.scenario,
-      asked.judge,
-      Span.ofSeconds(options.seconds),
-      asked.skip,
-      Clock.system
-    )
-    try
+    Edge.withSystem("skein"):
+      val shown                 = Shown(options.json.value)
+      val count                 = (asked.links.size + 1) * options.repeats
+      val most                  = count.toLong * options.seconds / asked.atOnce
+      shown.say(
+        s"$count runs of up to ${options.seconds} s, ${MarginTables.atOnce(asked.atOnce)}: " +
+          s"up to ${(most / 60.0).brief} min"
+      )
+      val trial = MarginTrial(
+        asked.command,
+        asked.world,
+        asked.scene.scene,
+        asked.scenario,
+        asked.judge,
+        Span.ofSeconds(options.seconds),
+        asked.skip,
+        Clock.system
+      )
       trial.warmUp()
       @volatile var stopped = false
       val runs              = MarginRuns(
@@ -219,8 +216,6 @@ final class MarginCommand(using scenarios: Scenarios)
         _ = shown.say(s"written: ${files.mkString(", ")}")
         _ <- Expect.that(!stopped)("stopped before all runs had ended; what was flown is printed")
       yield ()
-    catch case error: TransportError => Left(error.getMessage)
-    finally Edge.await(system.terminate()): Unit
 
   private def printed(flown: MarginRuns.Flown): String =
     flown.printed.map((link, run, text) => s"== $link, run $run\n$text\n").mkString
