@@ -35,7 +35,7 @@ final case class BenchmarkOptions(
 
 /** `./skein benchmark`: every loop and predictor in a fixed set of tasks, links and worlds. */
 final class BenchmarkCommand(using Scenarios)
-    extends OptionsCommand[BenchmarkOptions](
+    extends Command[BenchmarkOptions](
       "benchmark",
       "flies a fixed set of tasks over links and in worlds unlike the model, and ranks loops and predictors",
       ParserForClass[BenchmarkOptions]
@@ -51,7 +51,7 @@ final class BenchmarkCommand(using Scenarios)
         summon[Scenarios].kind(name).left.map("--scenario: " + _).map(_ => BenchmarkSet.Named.of(name))
       )
       entries <- chosen("--entry", options.entry, all.entries)(_.name)
-      folder  <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      folder  <- Expect.optional(options.out)(OutFolder.made("--out", _))
       set = all
         .copy(
           tasks =

@@ -96,7 +96,7 @@ object ObserveCommand
     folder.fold(Right(()))(write(data, observed.log, observed.vehicles, _, shown))
 
   private def folderOf(options: ObserveOptions): Either[String, Option[Path]] =
-    options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+    Expect.optional(options.out)(OutFolder.made("--out", _))
 
   private def observeProgram(options: ObserveOptions): Either[String, Unit] =
     val isMavlink = options.mavlink.value

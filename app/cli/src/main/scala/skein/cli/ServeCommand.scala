@@ -109,7 +109,7 @@ object ServeCommand
       _ <- Expect.that(autopilot.isEmpty || !options.mavlink.value):
         "--hil: not together with --mavlink, which is an autopilot itself"
       noise <-
-        options.sensors.fold(Right(None))(SensorNoise.parse(_).map(Some(_))).left.map("--sensors: " + _)
+        Expect.optional(options.sensors)(SensorNoise.parse).left.map("--sensors: " + _)
       _ <- Expect.that(noise.isEmpty || autopilot.isEmpty):
         "--sensors: not together with --hil, whose autopilots have sensors of their own"
       _ <- autopilot.flatMap(_ => plant.refusesAutopilots).map("--plant: " + _).toLeft(())

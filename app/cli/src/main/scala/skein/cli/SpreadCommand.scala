@@ -28,7 +28,7 @@ final case class SpreadOptions(
 /** @param program the class whose `main` starts the commands
   */
 final class SpreadCommand(program: String)(using Scenarios)
-    extends OptionsCommand[SpreadOptions](
+    extends Command[SpreadOptions](
       "spread",
       "flies each loop over each link many times in virtual time, and shows mean and spread",
       ParserForClass[SpreadOptions]
@@ -56,9 +56,8 @@ final class SpreadCommand(program: String)(using Scenarios)
       _       <- Expect.that(cluster.flatMap(_.block).forall(_ == 1)):
         "--block: expected 1, since each flight is a block of its " +
           s"own, got ${options.cluster.block.getOrElse(0)}"
-      out <- options.out
-        .orElse(cluster.map(_ => OutFolder.dated("spread")))
-        .fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      named = options.out.orElse(cluster.map(_ => OutFolder.dated("spread")))
+      out <- Expect.optional(named)(OutFolder.made("--out", _))
       ready = SpreadQuestion.Ready(settings)
       plans = ready.flights(options.seeds)
       shown = Shown(options.json.value)

@@ -139,7 +139,7 @@ object Formula:
           )
         else
           val fields =
-            fieldsOf(kind).map(each => each.getName -> argument(each.getType, s"$name.${each.getName}")).toMap
+            Shape.fieldsOf(kind).map(each => each.getName -> argument(each.getType, s"$name.${each.getName}")).toMap
           val made = lifter.make(Thing.Record(kind.getName.replace('.', '/'), fields))
           told(made) = fields.filter((field, _) => known.contains(s"$name.$field")).toSet
           made
@@ -175,7 +175,7 @@ object Formula:
         case _           => throw Untraceable(s"$name is no double")
 
       def ofFields(className: String, fields: Map[String, Value], name: String): Vector[(String, Node)] =
-        fieldsOf(files.load(className)).toVector
+        Shape.fieldsOf(files.load(className))
           .map(_.getName)
           // A pair of doubles has a specialised class, whose inherited fields are empty.
           .filter(each => fields.contains(each) && fields(each) != Null)
@@ -231,16 +231,6 @@ object Formula:
       _.getSuperclass
     ).takeWhile(_ != null).flatMap(_.getDeclaredMethods).toVector ++
       of.getMethods
-
-  /** The fields of a class that tracing reads, in the order of declaration; those of superclasses are first.
-    */
-  private def fieldsOf(kind: Class[?]): Seq[java.lang.reflect.Field] =
-    Iterator
-      .iterate[Class[?]](kind)(_.getSuperclass)
-      .takeWhile(each => each != null && each != classOf[Object])
-      .toSeq
-      .reverse
-      .flatMap(_.getDeclaredFields.filterNot(each => Modifier.isStatic(each.getModifiers)))
 
 /** An object whose method already is a formula, so that its bytecode is not read. */
 private[skein] trait KnownFormula:

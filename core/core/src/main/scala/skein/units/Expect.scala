@@ -11,6 +11,10 @@ private[skein] object Expect:
     of.iterator.foldLeft[Either[E, Vector[B]]](Right(Vector.empty)): (before, next) =>
       before.flatMap(done => one(next).map(done :+ _))
 
+  /** Converts what there is. */
+  def optional[A, E, B](of: Option[A])(one: A => Either[E, B]): Either[E, Option[B]] =
+    of.fold(Right(None))(one(_).map(Some(_)))
+
   /** Converts each element, or returns every mistake, one per line. */
   def all[A, B](of: Seq[A])(one: A => Either[String, B]): Either[String, Seq[B]] =
     val (wrong, right) = of.map(one).partitionMap(identity)
