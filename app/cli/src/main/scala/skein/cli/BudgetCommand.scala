@@ -59,7 +59,7 @@ final case class BudgetOptions(
 /** @param program the class whose `main` starts the commands
   */
 final class BudgetCommand(program: String)(using scenarios: Scenarios)
-    extends OptionsCommand[BudgetOptions](
+    extends Command[BudgetOptions](
       "budget",
       "says how much latency and jitter a policy or a scenario tolerates, and draws a map",
       ParserForClass[BudgetOptions]

@@ -79,10 +79,8 @@ final class FlyCommand(using Scenarios)
       learning <- options.learning.chosen(settings)
       plans = learning.fold(settings.plans)(settings.plansWith)
       isTcp = options.simulator.exists(_.startsWith(FlyCommand.Tcp))
-      simulator <- options.simulator
-        .map(_.stripPrefix(FlyCommand.Tcp))
-        .fold(Right(None))(Address.parse(_).map(Some(_)))
-        .left.map("--simulator: " + _)
+      named = options.simulator.map(_.stripPrefix(FlyCommand.Tcp))
+      simulator <- Expect.optional(named)(Address.parse).left.map("--simulator: " + _)
       _ <- Expect.that(!isTcp || settings.wire == Wire.Mavlink):
         s"--simulator: ${FlyCommand.Tcp} is for --mavlink alone; AirSim's protocol is always TCP"
       _ <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):
@@ -309,11 +307,9 @@ private[cli] object FlyCommand:
     * simulator is checked when its vehicles move to their starts, which needs their clocks.
     */
   def vehiclesThere(settings: FlySettings, simulator: Option[Address]): Either[String, Unit] =
-    simulator.filter(_ => settings.wire == Wire.AirSim) match
-      case None     => Right(())
-      case Some(at) =>
-        Edge.withSystem("skein-names"):
-          Edge.await(AirSimFleet.missing(settings.fleet, settings.sensors, at, TcpTransport(), Clock.system))
+    simulator.filter(_ => settings.wire == Wire.AirSim).fold(Right(())): at =>
+      Edge.withSystem("skein-names"):
+        Edge.await(AirSimFleet.missing(settings.fleet, settings.sensors, at, TcpTransport(), Clock.system))
 
   /** A line for a user who ended the command, with the number of recorded virtual flights: each is recorded
     * when it ends.

@@ -37,7 +37,7 @@ final case class IdentifyOptions(
 
 /** `./skein identify`: fits models of vehicles and of a sensor to recordings. */
 final class IdentifyCommand(using scenarios: Scenarios)
-    extends OptionsCommand[IdentifyOptions](
+    extends Command[IdentifyOptions](
       "identify",
       "fits models of vehicles, and of what their cameras recognise, to recordings",
       ParserForClass[IdentifyOptions]

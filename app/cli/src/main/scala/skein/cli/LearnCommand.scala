@@ -83,7 +83,7 @@ final case class LearnOptions(
 /** @param program the class whose `main` starts the commands
   */
 final class LearnCommand(program: String)(using Scenarios)
-    extends OptionsCommand[LearnOptions](
+    extends Command[LearnOptions](
       "learn",
       "trains a neural policy by SAC, DDPG or PPO in forward simulation under a loop's real timing",
       ParserForClass[LearnOptions]

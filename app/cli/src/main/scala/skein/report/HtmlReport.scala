@@ -13,24 +13,13 @@ import skein.units.Decimals.brief
 object HtmlReport:
 
   /** @param sections the report's sections, by [[ReportSections.of]] */
-  def render(set: FlightSet, sections: Seq[Section]): String =
-    val page = html(
-      lang := "en",
-      head(
-        meta(charset := "utf-8"),
-        meta(name    := "viewport", content := "width=device-width, initial-scale=1"),
-        pageTitle(heading(set)),
-        tag("style")(raw(style))
-      ),
-      body(
-        h1(heading(set)),
-        p(cls := "lead", abstractOf(set)),
-        remarks(set),
-        sections.map(part),
-        section(h2("Run parameters"), table(parameters(set)))
-      )
-    )
-    s"<!doctype html>\n${page.render}\n"
+  def render(set: FlightSet, sections: Seq[Section]): String = page(
+    heading(set),
+    p(cls := "lead", abstractOf(set)),
+    remarks(set),
+    sections.map(part),
+    section(h2("Run parameters"), table(parameters(set)))
+  )
 
   private def heading(set: FlightSet): String =
     set.flights.map(_.flight.scenario).distinct match
@@ -45,16 +34,20 @@ object HtmlReport:
 
   /** A page on the spread of many flights of each loop over each link. */
   def spread(flights: Int, sections: Seq[Section]): String =
-    val title = s"Skein: spread over $flights flights"
-    val page  = html(
+    page(s"Skein: spread over $flights flights", sections.map(part))
+
+  private def page(title: String, parts: Frag*): String =
+    val whole = html(
       lang := "en",
-      head(meta(charset := "utf-8"), pageTitle(title), tag("style")(raw(style))),
-      body(
-        h1(title),
-        sections.map(part)
-      )
+      head(
+        meta(charset := "utf-8"),
+        meta(name    := "viewport", content := "width=device-width, initial-scale=1"),
+        pageTitle(title),
+        tag("style")(raw(style))
+      ),
+      body(h1(title), parts)
     )
-    s"<!doctype html>\n${page.render}\n"
+    s"<!doctype html>\n${whole.render}\n"
 
   private def part(shown: Section): TypedTag[String] = section(
     h2(shown.title),
