@@ -6,7 +6,8 @@ package skein.policy
   *
   * @param aheadM about the distance that the vehicle flies before it follows a command
   */
-final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double) extends Policy.Memoryless, Goal:
+final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double)
+    extends Policy.Memoryless, Goal:
   def mostMps: Double = speedMps
 
   def wanted(seen: Observation, aheadS: Double): (Double, Double) =

@@ -16,10 +16,10 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
   override def isPlanar: Boolean = true
 
   def action(seen: Observation): Action =
-    val slot   = slotRad(seen)
-    val north  = seen.northM(evader) + ringM * StrictMath.cos(slot)
-    val east   = seen.eastM(evader) + ringM * StrictMath.sin(slot)
-    val self   = seen.self
+    val slot  = slotRad(seen)
+    val north = seen.northM(evader) + ringM * StrictMath.cos(slot)
+    val east  = seen.eastM(evader) + ringM * StrictMath.sin(slot)
+    val self  = seen.self
     seen.towards(
       pursuit.along(north, seen.northMps(evader), seen.northM(self), seen.northMps(self)),
       pursuit.along(east, seen.eastMps(evader), seen.eastM(self), seen.eastMps(self)),
