@@ -16,18 +16,18 @@ object BudgetFigure:
 
   /** @param maps the maps of one question at several periods */
   def apply(maps: Vector[BudgetMap]): Drawing =
-    val (_, unit) = maps.head.tolerance.shown(maps.head.task.unit)
+    val task      = maps.head.task
+    val (_, unit) = maps.head.tolerance.shown(task.unit)
     val scale     = scaleOf(maps)
     val cells     = maps.map(panel(_, scale))
-    val title     =
-      s"${maps.head.task.label}: ${maps.head.task.formula}, how far off the paused truth, $unit".stripSuffix(", ")
+    val title = s"${task.label}: ${task.formula}, how far off the paused truth, $unit".stripSuffix(", ")
     val grid = Drawing.grid(cells, columns = cells.size.min(3))
     val head = Drawing(
       grid.width,
       62,
       Vector(
         Mark.Text(Point(62, 18), title, Theme.titleSize, Theme.titleColour, bold = true),
-        Mark.Text(Point(62, 33), maps.head.task.vehicles, Theme.tickSize)
+        Mark.Text(Point(62, 33), task.vehicles, Theme.tickSize)
       ) ++
         Legend(62, legend(maps)*).shapes.map(_.moved(0, 40))
     )

@@ -76,8 +76,10 @@ object ScenarioQuestion:
   * @param over episodes over a link with these round trips; None: in a world that stands still while the
   *   controller decides
   */
-final class FlownSubject private (question: ScenarioQuestion, over: Option[LatencyDistribution] => WholeFlights)
-    extends BudgetSubject(BudgetTask(
+final class FlownSubject private (
+    question: ScenarioQuestion,
+    over: Option[LatencyDistribution] => WholeFlights
+) extends BudgetSubject(BudgetTask(
       question.conditions.loopText,
       question.conditions.periodMs,
       question.conditions.durationS,

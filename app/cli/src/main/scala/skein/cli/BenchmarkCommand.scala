@@ -44,8 +44,7 @@ final class BenchmarkCommand(using Scenarios)
   protected def execute(options: BenchmarkOptions): Either[String, Unit] =
     val all = BenchmarkSet.Published
     for
-      _ <- Expect.that(options.seeds >= 1 && options.seeds <= BenchmarkCommand.MostSeeds):
-        s"--seeds: expected 1 to ${BenchmarkCommand.MostSeeds}, got ${options.seeds}"
+      _     <- Expect.within("--seeds", options.seeds, 1, BenchmarkCommand.MostSeeds)
       tasks <- chosen("--task", options.task, all.tasks)(_.name)
       own   <- Expect.all(options.scenario)(name =>
         summon[Scenarios].kind(name).left.map("--scenario: " + _).map(_ => BenchmarkSet.Named.of(name))

@@ -78,8 +78,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       axes       <- axesOf(options, legs)
       _          <- Expect.that(options.atJitter.isEmpty || atJitterMs <= axes.jittersMs.last):
         s"--at-jitter: expected what the map has, up to ${(axes.jittersMs.last / legs.perRoundTrip).significant(3)} ms"
-      _ <- Expect.that(options.episodes.forall(count => count >= 1 && count <= MostEpisodes)):
-        s"--episodes: expected 1 to $MostEpisodes, got ${options.episodes.getOrElse(0)}"
+      _       <- Expect.optional(options.episodes)(Expect.within("--episodes", _, 1, MostEpisodes))
       periods <- Expect.all(options.period)(Span.parse(_).left.map("--period: " + _))
         .map(periods => if periods.isEmpty then Seq(BudgetCommand.Period) else periods)
       threads   <- options.forward.threadCount

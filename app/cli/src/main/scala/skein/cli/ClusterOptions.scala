@@ -34,10 +34,8 @@ final case class ClusterOptions(
       )
     else
       for
-        _ <- Expect.that(workers.forall(count => count >= 1 && count <= MostWorkers)):
-          s"--workers: expected 1 to $MostWorkers, got ${workers.getOrElse(0)}"
-        _ <- Expect.that(block.forall(size => size >= 1 && size <= SearchBlock.MostEpisodes)):
-          s"--block: expected 1 to ${SearchBlock.MostEpisodes}, got ${block.getOrElse(0)}"
+        _      <- Expect.optional(workers)(Expect.within("--workers", _, 1, MostWorkers))
+        _      <- Expect.optional(block)(Expect.within("--block", _, 1, SearchBlock.MostEpisodes))
         listen <- cluster.fold(Right(Loopback))(endpoint("--cluster", _))
         tls    <- Expect.optional(tls)(folder => Tls.of(Path.of(folder)))
       yield Some(Checked(workers.getOrElse(0), listen, block, tls))

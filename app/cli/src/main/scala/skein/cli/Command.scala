@@ -23,7 +23,8 @@ private object OptionValues:
 
 /** A command of `./skein`; each has a file of its own.
   *
-  * @tparam A the options, fields of a case class; mainargs derives flags from the fields' names and help from their `@arg(doc = …)`
+  * @tparam A the options, fields of a case class; mainargs derives flags from the fields' names and help from
+  *   their `@arg(doc = …)`
   * @param name the word after `./skein`
   * @param summary one line for `./skein --help`
   */

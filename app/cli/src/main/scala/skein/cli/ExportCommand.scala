@@ -33,7 +33,7 @@ object ExportCommand
   protected def execute(options: ExportOptions): Either[String, Unit] =
     for
       file <- only(options.file, "recording", usage).map(Path.of(_))
-      _ <- Expect.that(Seq(options.parquet, options.mcap, options.rosbag).exists(_.nonEmpty)):
+      _    <- Expect.that(Seq(options.parquet, options.mcap, options.rosbag).exists(_.nonEmpty)):
         s"expected what to write, got nothing: $usage"
       _ <- options.parquet.fold(Right(()))(parquet(file, _))
       _ <- options.mcap.fold(Right(()))(mcap(file, _))

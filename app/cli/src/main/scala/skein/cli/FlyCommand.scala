@@ -81,7 +81,7 @@ final class FlyCommand(using Scenarios)
       isTcp = options.simulator.exists(_.startsWith(FlyCommand.Tcp))
       named = options.simulator.map(_.stripPrefix(FlyCommand.Tcp))
       simulator <- Expect.optional(named)(Address.parse).left.map("--simulator: " + _)
-      _ <- Expect.that(!isTcp || settings.wire == Wire.Mavlink):
+      _         <- Expect.that(!isTcp || settings.wire == Wire.Mavlink):
         s"--simulator: ${FlyCommand.Tcp} is for --mavlink alone; AirSim's protocol is always TCP"
       _ <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):
         "--scene is for the built-in simulator; --simulator has a scene of its own"

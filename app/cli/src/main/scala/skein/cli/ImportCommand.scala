@@ -23,7 +23,7 @@ object ImportCommand
   protected def execute(options: ImportOptions): Either[String, Unit] =
     for
       file <- only(options.file, "MCAP file", "./skein import FILE --recording FILE").map(Path.of(_))
-      _ <- OutFolder.isThere("--recording", options.recording)
+      _    <- OutFolder.isThere("--recording", options.recording)
       recording = Path.of(options.recording)
       _      <- McapRecording.read(file, recording).left.map(_.message)
       digest <- Digest.ofFile(recording).left.map(_.message)

@@ -98,8 +98,7 @@ final class LearnCommand(program: String)(using Scenarios)
     val flights = options.flights.getOrElse(20)
     for
       threads <- options.forward.threadCount
-      _       <- Expect.that(flights >= 0 && flights <= 10_000):
-        s"--flights: expected 0 to 10000, got $flights"
+      _       <- Expect.within("--flights", flights, 0, 10_000)
       cluster <- options.cluster.checked
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, setup, state) = begun
@@ -114,19 +113,19 @@ final class LearnCommand(program: String)(using Scenarios)
   private def resume(options: LearnOptions, folder: String): Either[String, Begun] =
     val may = Arguments.told(options.cluster) ++ Set("--threads", "--flights", "--json")
     for
-      _    <- Arguments.resumed(options, may, "--threads, --flights and who judges")
-      file <- LearnFile.read(Path.of(folder)).left.map("--resume: " + _)
-      _    <- NamedFiles.unchanged(file.files, "learning")
+      _     <- Arguments.resumed(options, may, "--threads, --flights and who judges")
+      file  <- LearnFile.read(Path.of(folder)).left.map("--resume: " + _)
+      _     <- NamedFiles.unchanged(file.files, "learning")
       setup <- file.question.setup
-      _    <- VerifiedQuestion.unchanged(file.probe, setup.probe, "learning")
+      _     <- VerifiedQuestion.unchanged(file.probe, setup.probe, "learning")
     yield (Path.of(folder), setup, file.state)
 
   private def begin(options: LearnOptions): Either[String, Begun] =
     val folder = Path.of(options.out.getOrElse(OutFolder.dated("learned")))
     for
       setup <- LearnCommand.question(options).flatMap(_.setup)
-      _        <- setup.task
-      _        <- Expect.that(!Files.exists(folder.resolve(LearnFile.Name))):
+      _     <- setup.task
+      _     <- Expect.that(!Files.exists(folder.resolve(LearnFile.Name))):
         s"--out: $folder holds what was learned already; --resume ${Typed.path(folder)} goes on with it"
       _ <- OutFolder.made("--out", folder.toString)
     yield (folder, setup, LearnState())

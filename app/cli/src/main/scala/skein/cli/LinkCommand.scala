@@ -104,17 +104,15 @@ object LinkCommand
   ): Either[String, LatencyProfile] =
     val (told, profile) = own.fold(("--profile", options.profile.getOrElse("direct")))((flag, _))
     for
-      _       <- options.rate.fold[Either[String, Any]](Right(()))(Bandwidth.parse).left.map("--rate: " + _)
+      _       <- Expect.optional(options.rate)(Bandwidth.parse).left.map("--rate: " + _)
       limited <- Arguments
         .latency(options.rate.fold("")(rate => s"rate:$rate,") + profile)
         .left
         .map(s"$told: " + _)
     yield limited
 
-  private def every(text: Option[String]): Either[String, Option[Span]] = text match
-    case None       => Right(None)
-    case Some(text) =>
-      Span.parse(text).filterOrElse(_ > Span.Zero, s"expected more than 0, got '$text'").map(Some(_))
+  private def every(text: Option[String]): Either[String, Option[Span]] = Expect.optional(text): text =>
+    Span.parse(text).filterOrElse(_ > Span.Zero, s"expected more than 0, got '$text'")
 
   private def serve(
       listenAt: Address,

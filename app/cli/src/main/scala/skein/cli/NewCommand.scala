@@ -30,7 +30,7 @@ object NewCommand
   protected def execute(options: NewOptions): Either[String, Unit] =
     for
       name <- only(options.name, "name", "./skein new NAME")
-      _ <- Expect.that(name.matches("[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*")):
+      _    <- Expect.that(name.matches("[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*")):
         s"expected words of small letters and digits, joined by dashes, each begun by a letter, got '$name'"
       _ <- taken(name).toLeft(())
       folder = Path.of(options.out.getOrElse(name))

@@ -217,7 +217,13 @@ object ObserveCommand
             (if command.isEmpty then "; connect your program there, Ctrl-C ends it" else "")
         )
         val ended =
-          viewing(shows, "a program's loop", simulator.toString, proxy.takeNew, () => findings(proxy.observed)):
+          viewing(
+            shows,
+            "a program's loop",
+            simulator.toString,
+            proxy.takeNew,
+            () => findings(proxy.observed)
+          ):
             telling(proxy.progress)(untilEnd(options))
         if command.nonEmpty then Edge.await(proxy.ended()): Unit
         Edge.await(proxy.close())

@@ -92,7 +92,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       begun <- options.resume.fold(begin(options))(resume(options, _))
       (folder, asked, stored) = begun
       ready                   = asked.acceleratedBy(accelerator)
-      _     <- Expect.that(accelerator.isEmpty || ready.fliesForward):
+      _ <- Expect.that(accelerator.isEmpty || ready.fliesForward):
         "--gpu: expected what forward simulation flies; these are flights in virtual time"
       _ <- OutFolder.alone(folder):
         EpisodeRunner.using(cluster, program, ready, folder, threads, shown): runner =>
@@ -104,9 +104,9 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
   private def resume(options: SearchOptions, folder: String): Either[String, Begun] =
     val may = Arguments.told(options.cluster) ++ Set("--threads", "--gpu", "--json")
     for
-      _    <- Arguments.resumed(options, may, "--threads and who computes")
-      file <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)
-      _    <- NamedFiles.unchanged(file.files, "the search")
+      _     <- Arguments.resumed(options, may, "--threads and who computes")
+      file  <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)
+      _     <- NamedFiles.unchanged(file.files, "the search")
       ready <- file.question.setup
     yield (Path.of(folder), ready, Some(file))
 
@@ -114,7 +114,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
     val folder = Path.of(options.out.getOrElse(OutFolder.dated("searches")))
     for
       ready <- question(options)
-      _        <- Expect.that(!Files.exists(folder.resolve(SearchFile.Name))):
+      _     <- Expect.that(!Files.exists(folder.resolve(SearchFile.Name))):
         s"--out: $folder holds a search already; --resume ${Typed.path(folder)} goes on with it"
       _ <- OutFolder.made("--out", folder.toString)
     yield (folder, ready, None)

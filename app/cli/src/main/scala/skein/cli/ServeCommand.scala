@@ -104,9 +104,8 @@ object ServeCommand
       scene     <- NamedScene.read(options.scene).left.map("--scene: " + _)
       plant     <- SimulatedBody.parse(options.plant).left.map("--plant: " + _)
       kind      <- plant.kind(options.seed)
-      autopilot <-
-        options.hil.map(autopilotOf).fold[Either[String, Option[AutopilotKind]]](Right(None))(_.map(Some(_)))
-      _ <- Expect.that(autopilot.isEmpty || !options.mavlink.value):
+      autopilot <- Expect.optional(options.hil)(autopilotOf)
+      _         <- Expect.that(autopilot.isEmpty || !options.mavlink.value):
         "--hil: not together with --mavlink, which is an autopilot itself"
       noise <-
         Expect.optional(options.sensors)(SensorNoise.parse).left.map("--sensors: " + _)
@@ -115,7 +114,7 @@ object ServeCommand
       _ <- autopilot.flatMap(_ => plant.refusesAutopilots).map("--plant: " + _).toLeft(())
       _ <- Expect.that(!options.ros.value || autopilot.isEmpty && !options.mavlink.value):
         "--ros: not together with --mavlink or --hil, which fly the vehicles themselves"
-      step <- options.rosStep.fold[Either[String, Option[Span]]](Right(None))(stepOf(_).map(Some(_)))
+      step <- Expect.optional(options.rosStep)(stepOf)
       _    <- Expect.that(step.isEmpty || options.ros.value)("--ros-step: expected together with --ros")
       flies = if options.ros.value then "--ros" else if autopilot.isDefined then "--hil" else "--mavlink"
       other = world.vehicles.find(vehicle => vehicle.isCar || vehicle.isCamera)
@@ -204,8 +203,9 @@ object ServeCommand
         val server =
           Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system, ros.map(_.topics), step))
         ros.foreach(_.fly(server, settings.world))
-        val vehicles = settings.world.vehicles.map(vehicle => TextTable.printable(vehicle.name)).mkString(", ")
-        val mavlink  = settings.mavlink.fold(""): open =>
+        val vehicles =
+          settings.world.vehicles.map(vehicle => TextTable.printable(vehicle.name)).mkString(", ")
+        val mavlink = settings.mavlink.fold(""): open =>
           s", and by MAVLink from UDP ports ${open.udp.map(port =>
               s"${port.at.port}${port.tells.fold("")(to => s" to $to")}"
             ).mkString(", ")}"
@@ -216,7 +216,9 @@ object ServeCommand
         notice.foreach(line => Console.out.println(line))
         val ended = Promise[Either[String, Unit]]()
         server.failed.foreach(failure =>
-          ended.trySuccess(Left(s"the simulator at ${server.address} has failed and closed its port: $failure"))
+          ended.trySuccess(
+            Left(s"the simulator at ${server.address} has failed and closed its port: $failure")
+          )
         )(using ExecutionContext.parasitic)
         val telling =
           system.scheduler.scheduleWithFixedDelay(NewsEvery, NewsEvery)(tellNews(server, settings, ros))(using

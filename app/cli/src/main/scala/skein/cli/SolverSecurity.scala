@@ -75,7 +75,6 @@ object SolverSecurity:
     */
   final case class Checked(certificates: Option[SSLContext], kafka: Map[String, String])
 
-
   /** Kafka's settings with these certificates, after checking that they are readable. */
   private def ofKafka(tls: Tls): Either[String, Map[String, String]] =
     tls.context.map(_ => KafkaCertificates.settings(tls.keyStore, tls.trustStore, tls.password))

@@ -50,8 +50,7 @@ final class SpreadCommand(program: String)(using Scenarios)
       _        <- Expect.that(settings.only.isEmpty)("--only: expected with fly alone")
       _        <- Expect.that(settings.images.isEmpty):
         "--images: expected with fly alone; spread keeps no recordings"
-      _ <- Expect.that(options.seeds >= 1 && options.seeds <= SpreadCommand.MostSeeds):
-        s"--seeds: expected 1 to ${SpreadCommand.MostSeeds}, got ${options.seeds}"
+      _       <- Expect.within("--seeds", options.seeds, 1, SpreadCommand.MostSeeds)
       cluster <- options.cluster.checked
       _       <- Expect.that(cluster.flatMap(_.block).forall(_ == 1)):
         "--block: expected 1, since each flight is a block of its " +

@@ -8,11 +8,11 @@ import skein.plot.*
   * means, if there are any; in the charts of ages, outlines are the true ages.
   */
 object ObservationFigure:
-  private val barWidth  = 20.0
-  private val loopGap   = 14.0
-  private val linkGap   = 32.0
-  private val left      = 46.0
-  private val palePart  = 0.45
+  private val barWidth = 20.0
+  private val loopGap  = 14.0
+  private val linkGap  = 32.0
+  private val left     = 46.0
+  private val palePart = 0.45
 
   def apply(set: FlightSet): Option[Drawing] =
     val flights = set.flights.filter(_.roles.nonEmpty)
@@ -39,7 +39,7 @@ object ObservationFigure:
     val lefts   = placed(flights)
     val width   = lefts.last + widthOf(flights.last) + loopGap
     val panel   = bars(width, highest)
-    val groups = flights.zip(lefts).flatMap: (summary, left) =>
+    val groups  = flights.zip(lefts).flatMap: (summary, left) =>
       val drawn = summary.roles.zipWithIndex.flatMap: (role, index) =>
         draw(panel, bar(observation, summary, role), panel.left + left + index * barWidth, pale = index > 0)
       val middle = panel.left + left + widthOf(summary) / 2

@@ -41,7 +41,7 @@ object ObservedFigure:
   ): Drawing =
     val width = place * vehicles.size.max(3)
     val panel = ObservationFigure.bars(width, most)
-    val bars = vehicles.zipWithIndex.flatMap: (vehicle, index) =>
+    val bars  = vehicles.zipWithIndex.flatMap: (vehicle, index) =>
       val middle = panel.left + width * (index + 0.5) / vehicles.size
       val name   = if vehicle.name.isEmpty then "(the first)" else vehicle.name.take(12)
       val label  = Mark.Text(Point(middle, panel.bottom + 13), name, Theme.smallSize, anchor = Anchor.Middle)

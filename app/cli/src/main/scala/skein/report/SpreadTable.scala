@@ -26,7 +26,9 @@ object SpreadTable:
       "closest m"   -> metres(closest, _.mean),
       "captured"    -> (closest(_).fold("")(_.sorted.count(_ < PlanTable.CaptureM).toString)),
       "vs paused"   -> (group =>
-        Distribution.of(group.flatMap(truths.deviation)).fold("")(share => s"${(100 * share.mean).signed(1)} %")
+        Distribution.of(group.flatMap(truths.deviation)).fold("")(share =>
+          s"${(100 * share.mean).signed(1)} %"
+        )
       )
     )
 

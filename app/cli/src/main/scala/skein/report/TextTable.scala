@@ -36,7 +36,6 @@ object TextTable:
   def of[A](items: Iterable[A])(columns: Column[A]*): TextTable =
     TextTable(columns.map(_._1).toVector, items.map(item => columns.map(_._2(item)).toVector).toVector)
 
-
   /** Replaces control characters by `�`: names are from files and other machines, and could move a terminal's
     * cursor or colour it.
     */

@@ -34,8 +34,8 @@ final class WholeFlights private (
   def value(scenario: Scenario, objective: Objective, episode: Int): Either[String, Double] =
     sum(scenario, objective, episode).map(_.getOrElse(objective.direction.sign * WholeFlights.Never))
 
-  /** The weighted sum of an episode's measures; None if one has no value. A time that is never reached counts as
-    * the duration, as in [[ScenarioTerm.value]].
+  /** The weighted sum of an episode's measures; None if one has no value. A time that is never reached counts
+    * as the duration, as in [[ScenarioTerm.value]].
     *
     * @return Left says why the episode could not be completed
     */
@@ -101,7 +101,12 @@ object WholeFlights:
           Instant.ofNanos(0) + Span.ofSeconds(timeS),
           Vector3(x, y, z)
         )): Unit
-    Rollout(flown, conditions.timing, link, conditions.vehicle.response).fly(WorldRandom.key(seed, 0, episode), observer = observer): Unit
+    Rollout(
+      flown,
+      conditions.timing,
+      link,
+      conditions.vehicle.response
+    ).fly(WorldRandom.key(seed, 0, episode), observer = observer): Unit
     Tracks
       .of(agents.zip(samples).map((agent, places) =>
         Track.ofPositions(agent.name, agent.role.name, places.result())
