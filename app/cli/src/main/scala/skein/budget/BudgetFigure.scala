@@ -20,9 +20,9 @@ object BudgetFigure:
     val (_, unit) = maps.head.tolerance.shown(task.unit)
     val scale     = scaleOf(maps)
     val cells     = maps.map(panel(_, scale))
-    val title = s"${task.label}: ${task.formula}, how far off the paused truth, $unit".stripSuffix(", ")
-    val grid = Drawing.grid(cells, columns = cells.size.min(3))
-    val head = Drawing(
+    val title     = s"${task.label}: ${task.formula}, how far off the paused truth, $unit".stripSuffix(", ")
+    val grid      = Drawing.grid(cells, columns = cells.size.min(3))
+    val head      = Drawing(
       grid.width,
       62,
       Vector(

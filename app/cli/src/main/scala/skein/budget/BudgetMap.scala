@@ -58,7 +58,6 @@ final case class BudgetMap(
     import cell.*
     Vector(periodMs, meanMs, jitterMs, tally.mean, tally.sd, tally.count, deviation).mkString(",")
 
-  /** The simulated cells. */
   private def cells: Vector[BudgetMap.Cell] =
     for
       (jitter, i) <- budget.jittersMs.zipWithIndex

@@ -36,7 +36,6 @@ abstract class Command[A](val name: String, val summary: String, parser: ParserF
     */
   protected def execute(options: A): Either[String, Unit]
 
-  /** The text that `--help` prints. */
   final def help: String = help(100)
 
   private[cli] def help(width: Int): String = HelpText.of(name, summary, operandsAndOptions, width)

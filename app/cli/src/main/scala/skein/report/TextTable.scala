@@ -32,7 +32,7 @@ object TextTable:
   /** A column's name, and its cell for an item. */
   type Column[A] = (String, A => String)
 
-  /** A table with a row for each item. */
+  /** A table with a row for each item, whose cells the columns make. */
   def of[A](items: Iterable[A])(columns: Column[A]*): TextTable =
     TextTable(columns.map(_._1).toVector, items.map(item => columns.map(_._2(item)).toVector).toVector)
 

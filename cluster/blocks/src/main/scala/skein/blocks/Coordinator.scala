@@ -139,7 +139,6 @@ final case class Coordinator private (
   private def without(lease: Lease): Coordinator =
     copy(leases = leases - lease.block.number, seldom = seldom - lease.place)
 
-  /** Makes a block wait again. */
   private def returned(lease: Lease, counted: Counts): Coordinator =
     without(lease).copy(waiting = waiting.returned(lease.block), counts = counted)
 

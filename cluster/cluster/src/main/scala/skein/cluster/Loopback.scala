@@ -4,6 +4,6 @@ import java.net.InetAddress
 import scala.util.Try
 import skein.link.Address
 
+/** Whether an address is reachable only from this machine. */
 extension (at: Address)
-  /** Whether it is reachable only from this machine. */
   def isLoopback: Boolean = Try(InetAddress.getByName(at.host).isLoopbackAddress).getOrElse(false)

@@ -63,8 +63,6 @@ enum Reduction:
   /** Time from which the value was above 0 until the end, s; infinite if the last value was not. */
   case StaysPositive
 
-  private[scenario] def word: String = Scenario.worded(toString)
-
   /** Whether it is a time, not a value of the quantity. */
   private[scenario] def isTime: Boolean = !Set(Mean, Rms, Sd, Least, Most)(this)
 

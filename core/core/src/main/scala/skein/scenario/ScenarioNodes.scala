@@ -8,7 +8,7 @@ import skein.policy.PolicyInput
 /** The nodes of a [[ScenarioFile]], each defined by a line such as `7 add 3 5`. Their numbers are
   * consecutive, and arguments have smaller numbers.
   */
-private[scenario] final class ScenarioNodes:
+private[scenario] final class ScenarioNodes extends ScenarioNumbers:
   import ScenarioMistake.*
   import ScenarioNodes.*
 

@@ -150,7 +150,7 @@ private[scenario] final class ScenarioReader private (text: String):
     val name = words.name("its name")
     if series.exists(_.measures.exists(_.name == name)) then
       wrong(s"expected a measure's own name, got '${shown(name)}' twice")
-    val reduction = words.oneOf("a reduction", Reduction.values)(_.word)
+    val reduction = words.oneOf("a reduction", Reduction.values)(kind => Scenario.worded(kind.toString))
     val window    =
       if reduction.mayBeNever then None
       else Seq("last", "after").find(words.isNext).map(word => word -> words.fixed())

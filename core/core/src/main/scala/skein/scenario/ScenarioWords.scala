@@ -17,12 +17,19 @@ private[scenario] object ScenarioMistake:
     val cut = if text.length <= MostShown then text else text.take(MostShown) + "…"
     cut.map(letter => if letter.isControl then '?' else letter)
 
+/** The nodes of earlier lines, by their numbers. */
+private[scenario] trait ScenarioNumbers:
+  def size: Int
+  def apply(id: Int): Node
+  def isCondition(id: Int): Boolean
+  def reads(node: Node): Boolean
+
 /** The words of one line of a [[ScenarioFile]], separated by spaces. `"…"` is one word, in which `\"` stands
   * for `"`, and `\\` for `\`.
   *
   * @param nodes the nodes of earlier lines
   */
-private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNodes):
+private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers):
   import ScenarioMistake.*
   import ScenarioWords.*
 

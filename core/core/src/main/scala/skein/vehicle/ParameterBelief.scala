@@ -29,7 +29,11 @@ final case class ParameterBelief private[vehicle] (mean: Vector[Double], covaria
     * @param noises the outputs' standard deviations
     * @param effects an output's derivative by each parameter, by the output's index
     */
-  private[vehicle] def updatedAll(measured: Vector[Double], predicted: Vector[Double], noises: Vector[Double])(
+  private[vehicle] def updatedAll(
+      measured: Vector[Double],
+      predicted: Vector[Double],
+      noises: Vector[Double]
+  )(
       effects: Int => Vector[Double]
   ): ParameterBelief = measured.indices.foldLeft(this): (belief, i) =>
     val by = effects(i)
