@@ -252,14 +252,12 @@ private[rpc] final class ChannelState(
 
   /** Sends waiting calls, oldest first, while there is room. */
   private def dispatch(): Unit =
-    var next = if waiting > 0 then oldestWithPlace else None
-    while next.nonEmpty do
-      for call <- next do
-        val place = placeFor(call)
-        val _     = lineOf(call).remove(call)
-        waiting -= 1
-        assign(call, place)
-      next = if waiting > 0 then oldestWithPlace else None
+    def next = if waiting > 0 then oldestWithPlace else None
+    for call <- Iterator.continually(next).takeWhile(_.nonEmpty).flatten do
+      val place = placeFor(call)
+      val _     = lineOf(call).remove(call)
+      waiting -= 1
+      assign(call, place)
 
   private def oldestWithPlace: Option[Call] =
     val heads = (unkeyed +: connections.map(_.keyed)).iterator.filterNot(_.isEmpty).map(_.first)

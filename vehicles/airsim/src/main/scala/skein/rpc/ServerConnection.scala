@@ -214,7 +214,7 @@ private[rpc] final class ServerConnection(
           backFor = 0
           counters.lacking.increment()
           // Not decoded: decoding needs the memory that is lacking.
-          RpcMessage.requestId(frame) match
+          RpcMessage.idIn(frame).filter(id => id >= 0 && id <= RpcMessage.MaxId) match
             case Some(id) =>
               counters.requests.increment()
               counters.refused.increment()
@@ -263,10 +263,7 @@ private[rpc] final class ServerConnection(
 
       private def collect(): Unit =
         scheduled.set(false)
-        var outcome = done.poll()
-        while outcome != null do
-          finish(outcome)
-          outcome = done.poll()
+        Iterator.continually(done.poll()).takeWhile(_ != null).foreach(finish)
         proceed()
 
       private def finish(outcome: Outcome): Unit =

@@ -34,6 +34,13 @@ class RpcMessageSuite extends munit.FunSuite:
     )
     assertEquals(RpcMessage.headOf(Wire.pack(Obj())), None)
 
+  test("an id is read in every form of an integer; a notification has none"):
+    val forms = Seq("07", "cc07", "cd0007", "ce00000007", "cf0000000000000007", "d007", "d30000000000000007")
+    for array <- Seq("94", "dc0004", "dd00000004"); id <- forms do
+      val call = java.util.HexFormat.of.parseHex(s"${array}00${id}a16190")
+      assertEquals(RpcMessage.idIn(call), Some(7L), id)
+    assertEquals(RpcMessage.idIn(Wire.pack(Arr(Int32(2), Str("ping"), Arr()))), None)
+
   test("integers take their shortest form at every boundary"):
     val edges = (0 to 63).flatMap(bit => Seq(1L << bit, (1L << bit) - 1, -(1L << bit), -(1L << bit) - 1))
     for edge <- edges do
