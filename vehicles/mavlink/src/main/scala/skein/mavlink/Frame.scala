@@ -21,6 +21,7 @@ object Frame:
   private[mavlink] val StartVersion1 = 0xfe
 
   private[mavlink] val HeaderLength    = 10
+  private[mavlink] val HeaderLengthVersion1 = 6
   private[mavlink] val ChecksumLength  = 2
   private[mavlink] val SignatureLength = 13
 
