@@ -139,7 +139,7 @@ abstract class VehicleClient private[airsim] (
         Stamped(value, validAt, answer.sentAt, answer.receivedAt))
 
   protected def own(pose: VehiclePose): Msg =
-    writeMsg(Pose(Vector3r(pose.positionNed - originNed), Quaternionr(pose.orientation)))
+    writeMsg(Pose(pose.positionNed - originNed, pose.orientation))
 
   protected def inWorld(state: KinematicsState): Kinematics =
     Kinematics(

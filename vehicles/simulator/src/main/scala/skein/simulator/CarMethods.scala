@@ -11,9 +11,7 @@ private[simulator] object CarMethods:
       case (simulation, (controls, name)) =>
         car(simulation, name)((_, car) => done(car.setControls(controls)))
     ,
-    one[String]("getCarControls")((simulation, name) =>
-      car(simulation, name)((_, car) => answer(car.controls))
-    ),
+    read("getCarControls", car)((car, _) => car.controls),
     one[String]("getCarState"): (simulation, name) =>
       car(simulation, name): (_, car) =>
         val seen = VehicleMethods.sensed(simulation, car)

@@ -18,10 +18,7 @@ private[simulator] object CosysMethods:
           val now = simulation.world.now
           answer(ComputerVisionState(VehicleMethods.kinematics(vehicle, now), now))
     ,
-    one[String]("simGetPhysicsRawKinematics"): (simulation, name) =>
-      simulated(simulation, name)((_, vehicle) =>
-        answer(VehicleMethods.kinematics(vehicle, simulation.world.now))
-      ),
+    read("simGetPhysicsRawKinematics", simulated)(VehicleMethods.kinematics),
     many[(KinematicsState, String)]("simSetPhysicsRawKinematics"):
       case (simulation, (state, name)) => SceneMethods.setKinematics(simulation, state, name)
     ,

@@ -44,4 +44,4 @@ private[simulator] object Detections:
     val q       = camera.orientation
     val inverse = Placement(Vector3.Zero, q.copy(x = -q.x, y = -q.y, z = -q.z))
     val turned  = inverse.outside(Placement(Vector3.Zero, thing.orientation))
-    Pose(Vector3r(camera.inside(thing.position)), Quaternionr(turned.orientation))
+    Pose(camera.inside(thing.position), turned.orientation)

@@ -15,7 +15,7 @@ private[simulator] final class FollowedPlan:
   /** Time of the next turn; None if there is none before a new plan arrives. */
   def dueAt: Option[Instant] = due
 
-  def receive(sequence: Long, plan: Vector[(at: Instant, action: Move.Order)], now: Instant): Unit =
+  def receive(sequence: Long, plan: Move.Plan, now: Instant): Unit =
     buffer = buffer.received(sequence, plan, now)
     if due.forall(_ > now) then due = buffer.due(now).map(_ => now).orElse(buffer.nextAfter(now))
 

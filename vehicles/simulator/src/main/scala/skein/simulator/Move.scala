@@ -32,6 +32,8 @@ private[simulator] object Move:
     */
   type Order = SimulatedMultirotor => Either[String, Move]
 
+  type Plan = Vector[(at: Instant, action: Order)]
+
   /** Keeps one goal for a duration. A duration of zero ends immediately with `ifNone`. */
   def hold(seconds: Float, ifNone: Boolean = true)(goal: SimulatedMultirotor => Setpoint): Order = vehicle =>
     val setpoint = goal(vehicle)

@@ -1,6 +1,6 @@
 package skein.simulator
 
-import skein.units.{Expect, Instant}
+import skein.units.Expect
 import upack.Str
 
 /** The function that gives a vehicle a plan: moves for several times in one call. AirSim has no such
@@ -24,9 +24,8 @@ private[simulator] object PlanMethods:
               answer(true)
   )
 
-  private type Planned = Vector[(at: Instant, action: Move.Order)]
 
-  private def orders(simulation: Simulated, call: PlanCall): Either[String, Planned] =
+  private def orders(simulation: Simulated, call: PlanCall): Either[String, Move.Plan] =
     Expect.each(call.moves)(move =>
       order(simulation, move, call.vehicle).map(flies => (at = move.at, action = flies))
     )

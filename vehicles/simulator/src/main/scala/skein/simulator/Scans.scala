@@ -1,7 +1,7 @@
 package skein.simulator
 
 import scala.collection.mutable
-import skein.airsim.wire.{LidarData, Pose, Quaternionr, Vector3r}
+import skein.airsim.wire.{LidarData, Pose}
 import skein.scene.{Bodies, Lidar, Moment, Placement, Scene}
 import skein.units.*
 
@@ -65,6 +65,6 @@ final private[simulator] class Scan(
     LidarData(
       at,
       points.xyz,
-      Pose(Vector3r(sensor.position - origin), Quaternionr(sensor.orientation)),
+      Pose(sensor.position - origin, sensor.orientation),
       points.items.map(idOf)
     )

@@ -3,7 +3,7 @@ package skein.simulator
 import scala.util.control.NonFatal
 import skein.airsim.wire.Vector3r
 import skein.rpc.Encoded
-import skein.units.Span
+import skein.units.{Instant, Span}
 import upack.Msg
 import upickle.default.{Writer, writeMsg}
 
@@ -108,6 +108,14 @@ private[simulator] object ServerMethod:
     vehicle(simulation, name):
       case (index, car: SimulatedCar) => run(index, car)
       case (_, other) => CallOutcome.Threw(s"expected a car, '${other.settings.name}' is a ${other.kind}")
+
+  /** A function that reads the current state of a vehicle found by its name. */
+  def read[V, A: Writer](
+      method: String,
+      find: (Simulated, String) => ((Int, V) => CallOutcome) => CallOutcome
+  )(value: (V, Instant) => A): ServerMethod =
+    one[String](method): (simulation, name) =>
+      find(simulation, name)((_, vehicle) => answer(value(vehicle, simulation.world.now)))
 
   /** Refuses a position that is outside the limits, else runs `run`. */
   def within(place: Vector3r)(run: => CallOutcome): CallOutcome =

@@ -113,6 +113,10 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   def worldPosition(at: Instant): Vector3 = settings.startNed + positionAt(at)
 
+  /** True motion, world NED. */
+  def worldMotion(at: Instant): Kinematics =
+    Kinematics(worldPosition(at), velocityAt(at), orientation, angularVelocityFrd)
+
   /** Contacts with objects of the scene so far, the ground aside. Touches of one object within
     * [[SimulatedVehicle.OneContact]] of each other are one contact.
     */

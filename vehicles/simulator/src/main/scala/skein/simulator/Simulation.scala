@@ -51,7 +51,7 @@ final class Simulation(
   private[simulator] val speed: Double = settings.speed * settings.world.clockSpeed
 
   private val workers    = settings.newWorkers[SimulatorCall, Waiting]()
-  private val answers    = ArrayBuffer.empty[SimulatorAnswer]
+  private val answers    = mutable.Queue.empty[SimulatorAnswer]
   private val continuing = ArrayBuffer.empty[Long]
   private var until      = startedAt
   private var paused     = false
@@ -107,12 +107,9 @@ final class Simulation(
     */
   def advance(at: Instant): Unit =
     world.heldTo.foreach(_.told(at))
-    var handover = workers.nextHandover
-    while handover.exists(_ <= at) do
-      handover.foreach: due =>
-        runTo(due)
-        handOver(due, due)
-      handover = workers.nextHandover
+    for due <- Iterator.continually(workers.nextHandover).takeWhile(_.exists(_ <= at)).flatten do
+      runTo(due)
+      handOver(due, due)
     runTo(at)
     settle(at)
 
@@ -128,9 +125,7 @@ final class Simulation(
       next.map(_.max(at))
 
   def takeAnswers(): Seq[SimulatorAnswer] =
-    val all = answers.toSeq
-    answers.clear()
-    all
+    answers.dequeueAll(_ => true)
 
   def isPaused: Boolean = paused && continuing.isEmpty
 
@@ -147,11 +142,7 @@ final class Simulation(
     world.add(vehicle)
     workers.addVehicle()
 
-  private[simulator] def follow(
-      vehicle: Int,
-      sequence: Long,
-      plan: Vector[(at: Instant, action: Move.Order)]
-  ): Unit =
+  private[simulator] def follow(vehicle: Int, sequence: Long, plan: Move.Plan): Unit =
     // A move, and those that wait for its lock, are replaced; the settling after this call answers them.
     workers.dismiss(vehicle, all = true).foreach(flight => giveUp(flight.call))
     world.follow(vehicle, sequence, plan)
@@ -220,10 +211,8 @@ final class Simulation(
 
   /** Starts the moves whose lock arrives by `due`. */
   private def handOver(due: Instant, at: Instant): Unit =
-    var next = workers.handOver(due)
-    while next.nonEmpty do
-      next.foreach((vehicle, waiting) => start(vehicle, waiting, at))
-      next = workers.handOver(due)
+    for (vehicle, waiting) <- Iterator.continually(workers.handOver(due)).takeWhile(_.nonEmpty).flatten do
+      start(vehicle, waiting, at)
 
   private def run(call: SimulatorCall, at: Instant): Unit =
     def fail(text: String): Unit = answers += SimulatorAnswer(call.token, Left(text))

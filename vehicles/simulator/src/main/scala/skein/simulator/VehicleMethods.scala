@@ -17,9 +17,7 @@ private[simulator] object VehicleMethods:
       case (simulation, (on, name)) =>
         vehicle(simulation, name)((_, vehicle) => done(vehicle.setApiControl(on)))
     ,
-    one[String]("isApiControlEnabled")((simulation, name) =>
-      vehicle(simulation, name)((_, vehicle) => answer(vehicle.apiControl))
-    ),
+    read("isApiControlEnabled", vehicle)((vehicle, _) => vehicle.apiControl),
     many[(Boolean, String)]("armDisarm"):
       case (simulation, (on, name)) => vehicle(simulation, name)((_, vehicle) => answer(vehicle.arm(on)))
     ,
@@ -41,9 +39,7 @@ private[simulator] object VehicleMethods:
       multirotor(simulation, name)((_, vehicle) => answer(state(vehicle, sensed(simulation, vehicle))))
     ),
     read("getRotorStates", multirotor)(rotors),
-    one[String]("getHomeGeoPoint")((simulation, name) =>
-      vehicle(simulation, name)((_, vehicle) => answer(GeoPoint(vehicle.home)))
-    ),
+    read("getHomeGeoPoint", vehicle)((vehicle, _) => GeoPoint(vehicle.home)),
     read("simGetGroundTruthKinematics", simulated)(kinematics),
     read("simGetGroundTruthEnvironment", simulated)(environment),
     read("simGetVehiclePose", simulated)(pose),
@@ -53,9 +49,7 @@ private[simulator] object VehicleMethods:
           within(pose.position):
             done(vehicle.place(pose.position.toVector, pose.orientation.toQuaternion, simulation.world.now))
     ,
-    one[String]("simGetCollisionInfo")((simulation, name) =>
-      simulated(simulation, name)((_, vehicle) => answer(collision(vehicle.takeTouch())))
-    ),
+    read("simGetCollisionInfo", simulated)((vehicle, _) => collision(vehicle.takeTouch())),
     many[(Pose, String)]("skeinHoverAt"):
       case (simulation, (pose, name)) =>
         multirotor(simulation, name): (index, vehicle) =>
@@ -92,14 +86,6 @@ private[simulator] object VehicleMethods:
             ranger => answer(distance(simulation, index, ranger))
   )
 
-  /** A function that reads the current state of a vehicle found by its name. */
-  private def read[V, A: Writer](
-      method: String,
-      find: (Simulated, String) => ((Int, V) => CallOutcome) => CallOutcome
-  )(value: (V, Instant) => A): ServerMethod =
-    one[String](method): (simulation, name) =>
-      find(simulation, name)((_, vehicle) => answer(value(vehicle, simulation.world.now)))
-
   /** A function that reads a sensor by name; an empty name means the first of its kind. */
   private def sensor[A: Writer](method: String, kind: SensorKind, called: String)(
       value: (SimulatedVehicle, Instant) => A
@@ -123,7 +109,7 @@ private[simulator] object VehicleMethods:
       math.min(met, ranger.mostM).toFloat,
       ranger.leastM.toFloat,
       ranger.mostM.toFloat,
-      Pose(Vector3r(ranger.place.position), Quaternionr(ranger.place.orientation))
+      Pose(ranger.place.position, ranger.place.orientation)
     )
 
   def missing(kind: String, sensor: String): CallOutcome =
@@ -155,7 +141,7 @@ private[simulator] object VehicleMethods:
   )
 
   private def pose(vehicle: SimulatedVehicle, at: Instant) =
-    Pose(Vector3r(vehicle.positionAt(at)), Quaternionr(vehicle.orientation))
+    Pose(vehicle.positionAt(at), vehicle.orientation)
 
   private def collision(touch: Option[Touch]) = touch.fold(CollisionInfo.None): touch =>
     CollisionInfo(

@@ -29,7 +29,7 @@ final class World(
   private var present    = settings.vehicles.map(made)
   private val moves      = ArrayBuffer.fill(present.size)(Option.empty[Running])
   private val followed   = mutable.HashMap.empty[Int, FollowedPlan]
-  private val ended      = ArrayBuffer.empty[Ended]
+  private val ended      = mutable.Queue.empty[Ended]
   private val stepLength = Span.ofSeconds(kind.stepS)
   private var clock      = start
   private var nextStep   = start + stepLength
@@ -100,11 +100,10 @@ final class World(
     */
   def advanceTo(to: Instant): Unit =
     for held <- lockstep do
-      var next = if held.isWaiting then None else held.stop(to)
-      while next.exists(_ <= to) do
-        next.foreach(runTo)
+      def next = if held.isWaiting then None else held.stop(to)
+      for stop <- Iterator.continually(next).takeWhile(_.exists(_ <= to)).flatten do
+        runTo(stop)
         held.reached()
-        next = if held.isWaiting then None else held.stop(to)
     if !lockstep.exists(_.isWaiting) then runTo(to)
 
   private def runTo(to: Instant): Unit =
@@ -128,11 +127,7 @@ final class World(
     takeTurn(vehicle)
 
   /** Adds a plan to the vehicle's buffer; its move ends. Only multirotors have such a buffer. */
-  private[simulator] def follow(
-      vehicle: Int,
-      sequence: Long,
-      plan: Vector[(at: Instant, action: Move.Order)]
-  ): Unit =
+  private[simulator] def follow(vehicle: Int, sequence: Long, plan: Move.Plan): Unit =
     end(vehicle, result = false)
     val buffer = followed.getOrElseUpdate(vehicle, FollowedPlan())
     buffer.receive(sequence, plan, clock)
@@ -149,21 +144,14 @@ final class World(
   private[simulator] def isMoving(vehicle: Int): Boolean = moves(vehicle).nonEmpty
 
   /** Takes the moves that have ended since the last call. */
-  def takeEnded(): Seq[Ended] =
-    val all = ended.toSeq
-    ended.clear()
-    all
+  def takeEnded(): Seq[Ended] = ended.dequeueAll(_ => true)
 
   /** Whether [[takeEnded]] would return anything. */
   def hasEnded: Boolean = ended.nonEmpty
 
   /** The earliest time at which the next move can end. */
   def nextEndAt: Option[Instant] =
-    var next = Option.empty[Instant]
-    for move <- moves; running <- move do
-      val end = running.dueAt.max(running.startedAt + running.move.lastsAtLeast)
-      if next.forall(end < _) then next = Some(end)
-    next
+    moves.flatten.map(running => running.dueAt.max(running.startedAt + running.move.lastsAtLeast)).minOption
 
   def reset(): Unit =
     vehicles.indices.foreach(cancelMove)

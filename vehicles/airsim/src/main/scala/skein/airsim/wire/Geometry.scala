@@ -23,6 +23,10 @@ private[skein] object Quaternionr:
 /** A pose: position in m, from the vehicle's own start, NED. */
 final private[skein] case class Pose(position: Vector3r, orientation: Quaternionr) derives ReadWriter
 
+private[skein] object Pose:
+  def apply(position: Vector3, orientation: Quaternion): Pose =
+    Pose(Vector3r(position), Quaternionr(orientation))
+
 /** Degrees and metres above sea level; latitude and longitude are 64-bit on the wire. */
 final private[skein] case class GeoPoint(latitude: Double, longitude: Double, altitude: Float)
     derives ReadWriter

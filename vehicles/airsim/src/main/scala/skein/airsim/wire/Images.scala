@@ -6,7 +6,7 @@ import upack.{Binary, Msg, Str}
 import upickle.default.{ReadWriter, writeMsg}
 import upickle.implicits.serializeDefaults
 
-/** A request for one image; `image_type` is an [[ImageType]]'s number. Cosys-AirSim's additional key is left
+/** A request for one image; `image_type` is an `ImageKind`'s number. Cosys-AirSim's additional key is left
   * out; its server does not need it.
   */
 final private[skein] case class ImageRequest(
@@ -15,12 +15,6 @@ final private[skein] case class ImageRequest(
     pixels_as_float: Boolean,
     compress: Boolean
 ) derives ReadWriter
-
-/** Kinds of images; the ordinals are AirSim's numbers. */
-private[skein] enum ImageType:
-  case Scene, DepthPlanar, DepthPerspective, DepthVis, DisparityNormalized, Segmentation, SurfaceNormals,
-    Infrared,
-    OpticalFlow, OpticalFlowVis
 
 /** One image of an answer.
   *
