@@ -231,15 +231,11 @@ private[rpc] final class ChannelState(
     connections(connection).up && connections(connection).inFlight.size < settings.windowPerConnection
 
   private def leastLoaded: Int =
-    var best = NoPlace
-    var i    = 0
-    while i < connections.length do
-      val candidate = (rotation + i) % connections.length
-      if hasPlace(candidate) &&
-        (best == NoPlace || connections(candidate).inFlight.size < connections(best).inFlight.size)
-      then best = candidate
-      i += 1
-    best
+    Iterator
+      .tabulate(connections.length)(i => (rotation + i) % connections.length)
+      .filter(hasPlace)
+      .minByOption(connections(_).inFlight.size)
+      .getOrElse(NoPlace)
 
   private def assign(call: Call, connection: Int): Unit =
     val slot = connections(connection)

@@ -59,7 +59,7 @@ class RpcMessageSuite extends munit.FunSuite:
   test("all messages written since the last take are taken together, once"):
     val writer = MessageWriter()
     writer.request(1, "a", Seq(Binary(new Array[Byte](100_000))))
-    writer.notification("b", Seq(Null))
+    writer.request(2, "b", Seq(Null))
     writer.reply(2, Left("no"))
     val length = writer.length
     val taken  = writer.take()
@@ -68,8 +68,9 @@ class RpcMessageSuite extends munit.FunSuite:
     val frames = Wire.framed(Framer(), Seq(taken)).collect { case Framed.Complete(bytes) => bytes }
     assertEquals(
       frames.map(RpcMessage.fromClient).map(_.productPrefix),
-      Seq("Request", "Notification", "Request")
+      Seq("Request", "Request", "Request")
     )
+    assertEquals(RpcMessage.fromClient(Wire.notification("c")).productPrefix, "Notification")
 
   test("requests and notifications are distinguished by their length, whatever the type field is"):
     val params = Arr(Int32(1))
