@@ -28,7 +28,6 @@ private[rpc] final class ServerConnection(
     connection: Long,
     limits: ServerLimits,
     handler: RpcHandler,
-    failureText: (RpcRequest, Throwable) => String,
     counters: ServerCounters,
     holdings: Holdings,
     turns: Holdings,
@@ -272,7 +271,9 @@ private[rpc] final class ServerConnection(
         if outcome.id != NoReply then
           val reply = outcome.result match
             case Success(answer)  => answer
-            case Failure(failure) => Left(failureText(outcome.request, failure))
+            case Failure(failure) =>
+              val text = Option(failure.getMessage).getOrElse(failure.toString)
+              Left(Rpclib.threw(outcome.request.method, outcome.request.params.length, text))
           val before = writer.length
           writer.reply(outcome.id, reply)
           val size    = writer.length - before

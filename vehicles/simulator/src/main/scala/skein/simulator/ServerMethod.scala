@@ -3,7 +3,7 @@ package skein.simulator
 import scala.util.control.NonFatal
 import skein.airsim.wire.Vector3r
 import skein.rpc.Encoded
-import skein.units.{Instant, Span}
+import skein.units.Span
 import upack.Msg
 import upickle.default.{Writer, writeMsg}
 
@@ -59,20 +59,6 @@ final private[simulator] class ServerMethod(
 
 private[simulator] object ServerMethod:
 
-  def none(name: String)(run: Simulated => CallOutcome): ServerMethod =
-    ServerMethod(name, List.empty, (simulation, _) => run(simulation))
-
-  def one[A](name: String)(run: (Simulated, A) => CallOutcome)(using argument: Argument[A]): ServerMethod =
-    ServerMethod(
-      name,
-      List(argument),
-      (simulation, values) => run(simulation, values.asInstanceOf[Tuple1[A]]._1)
-    )
-
-  /** A function of several parameters, read as the tuple that `run` takes. */
-  inline def many[T <: Tuple](name: String)(run: (Simulated, T) => CallOutcome): ServerMethod =
-    ServerMethod(name, Argument.each[T], (simulation, values) => run(simulation, values.asInstanceOf[T]))
-
   def answer[A: Writer](value: A): CallOutcome = CallOutcome.Answered(writeMsg(value))
 
   /** Runs an effect whose call has no result. */
@@ -108,14 +94,6 @@ private[simulator] object ServerMethod:
     vehicle(simulation, name):
       case (index, car: SimulatedCar) => run(index, car)
       case (_, other) => CallOutcome.Threw(s"expected a car, '${other.settings.name}' is a ${other.kind}")
-
-  /** A function that reads the current state of a vehicle found by its name. */
-  def read[V, A: Writer](
-      method: String,
-      find: (Simulated, String) => ((Int, V) => CallOutcome) => CallOutcome
-  )(value: (V, Instant) => A): ServerMethod =
-    one[String](method): (simulation, name) =>
-      find(simulation, name)((_, vehicle) => answer(value(vehicle, simulation.world.now)))
 
   /** Refuses a position that is outside the limits, else runs `run`. */
   def within(place: Vector3r)(run: => CallOutcome): CallOutcome =

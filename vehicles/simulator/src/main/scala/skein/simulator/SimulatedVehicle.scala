@@ -1,7 +1,7 @@
 package skein.simulator
 
 import skein.airsim.VehicleSettings
-import skein.airsim.wire.KinematicsState
+import skein.airsim.wire.{CollisionInfo, KinematicsState}
 import skein.scene.{Scene, SceneObject}
 import skein.signal.Kinematics
 import skein.units.*
@@ -20,8 +20,8 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   protected var resetAt: Instant       = Instant.Epoch
   private var gpsFrom: Instant         = Instant.Epoch
   protected var controlled: Boolean    = false
-  protected var touched: Option[Touch] = None
-  private var lastMet: Option[Touch]   = None
+  protected var touched: Option[CollisionInfo] = None
+  private var lastMet: Option[CollisionInfo]   = None
   private var met                      = 0L
   protected val obstacles: Obstacles   = Obstacles(settings.startNed)
   private var startedAt                = Instant.Epoch
@@ -122,16 +122,17 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
     */
   def contacts: Long = met
 
-  protected def meets(touch: Touch): Unit =
+  protected def meets(touch: CollisionInfo): Unit =
     if !lastMet.exists(last =>
-        last.name == touch.name && touch.at.since(last.at) <= SimulatedVehicle.OneContact
+        last.object_name == touch.object_name &&
+          touch.time_stamp.since(last.time_stamp) <= SimulatedVehicle.OneContact
       )
     then met += 1
     lastMet = Some(touch)
     touched = lastMet
 
   /** Takes the last touch of the ground or of an object since the last call. */
-  def takeTouch(): Option[Touch] =
+  def takeTouch(): Option[CollisionInfo] =
     val last = touched
     touched = None
     last

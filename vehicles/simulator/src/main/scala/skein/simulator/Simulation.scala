@@ -3,7 +3,7 @@ package skein.simulator
 import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.VehicleSettings
-import skein.rpc.Encoded
+import skein.rpc.{Encoded, Rpclib}
 import skein.units.*
 import upack.{Bool, Msg}
 
@@ -306,7 +306,7 @@ object Simulation:
 
   /** All functions by name; AirSim's form before Cosys-AirSim's. */
   private[simulator] val named: Map[String, Seq[ServerMethod]] =
-    (methods ++ CosysMethods.forms(methods)).groupBy(_.name)
+    (methods ++ CosysMethods.forms).groupBy(_.name)
 
   /** Functions that let a person regain control of a busy simulator, and plans, which hold no worker: they
     * never wait behind moves.

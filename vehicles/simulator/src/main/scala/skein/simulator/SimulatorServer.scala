@@ -309,12 +309,9 @@ object SimulatorServer:
               superseded.foreach(_.answer.success(Right(Bool(false))))
               run(call)
 
-    private def supersedes(call: Call, earlier: Call) = Simulation.supersedes(
-      call.request.method,
-      call.request.params,
-      earlier.request.method,
-      earlier.request.params
-    )
+    private def supersedes(call: Call, earlier: Call) =
+      val (one, other) = (call.request, earlier.request)
+      Simulation.supersedes(one.method, one.params, other.method, other.params)
 
     private def run(call: Call): Unit =
       val Call(request, _) = call

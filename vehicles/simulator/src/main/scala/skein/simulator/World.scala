@@ -3,7 +3,8 @@ package skein.simulator
 import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.{VehicleSettings, WorldSettings}
-import skein.scene.{Bodies, Lidar, Placement, Scene}
+import skein.airsim.wire.Pose
+import skein.scene.{Bodies, Lidar, Moment, Placement, Scene}
 import skein.signal.SplitMix64
 import skein.units.*
 import skein.vehicle.{PathFollowing, RotorcraftKind}
@@ -180,18 +181,14 @@ final class World(
     else scans.newest(vehicle, name)
 
   private def scan(carried: Scans.Carried, at: Instant, count: Long): Scan =
-    val vehicle = carried.vehicle
-    Scan(
-      at,
-      count,
-      SplitMix64.seedOf(SplitMix64.seedOf(vehicle, carried.name.hashCode), count),
-      carried.lidar,
-      vehicle,
-      placeOf(vehicle, at),
-      vehicles(vehicle).settings.startNed,
-      scene,
-      bodies(at)
-    )
+    val Scans.Carried(index, name, lidar) = carried
+    val (place, origin)                   = (placeOf(index, at), vehicles(index).settings.startNed)
+    val moment                            = Moment(scene, bodies(at))
+    // Differs between vehicles, lidars and scans.
+    val noise  = SplitMix64.seedOf(SplitMix64.seedOf(index, name.hashCode), count)
+    val sensor = place.outside(lidar.place)
+    val pose   = Pose(sensor.position - origin, sensor.orientation)
+    Scan(at, count, pose, () => lidar.scan(moment, place, moment.itemOf(index), origin, noise))
 
   /** Sets the velocity of the air in the world, NED, m/s. */
   def setWind(windNed: Vector3): Unit =
