@@ -77,9 +77,9 @@ final class EmulatedLink(
       broken: TransportError,
       isDatagrams: Boolean = false
   ): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
-    val index                                   = 2 * connections.getAndIncrement()
-    val whole                                   = AtomicBoolean(true)
-    def countBreak()                            = if whole.getAndSet(false) then counters.disconnects.increment()
+    val index        = 2 * connections.getAndIncrement()
+    val whole        = AtomicBoolean(true)
+    def countBreak() = if whole.getAndSet(false) then counters.disconnects.increment()
     def line(direction: Direction, index: Long) =
       val open    = delivery(direction.latency, SplitMix64.seedOf(lineSeed, index), !isDatagrams)
       val delayed = Flow.fromGraph(DelayLine(

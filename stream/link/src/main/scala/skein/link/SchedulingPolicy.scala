@@ -36,7 +36,11 @@ enum SchedulingPolicy(private val number: Int, priority: Int):
   def schedule(thread: Int): Boolean = SchedulingPolicy.isLinux && Try:
     Using.resource(Arena.ofConfined()): arena =>
       val flags = if this != Idle then SchedulingPolicy.ResetOnFork else 0
-      SchedulingPolicy.setScheduler(thread, number | flags, arena.allocateFrom(ValueLayout.JAVA_INT, priority))
+      SchedulingPolicy.setScheduler(
+        thread,
+        number | flags,
+        arena.allocateFrom(ValueLayout.JAVA_INT, priority)
+      )
   .getOrElse(false)
 
 object SchedulingPolicy:

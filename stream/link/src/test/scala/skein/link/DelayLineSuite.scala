@@ -49,14 +49,23 @@ class DelayLineSuite extends munit.FunSuite:
           LongAdder(),
           isInOrder = !isDatagrams
         )
-      val counts = LinkCounters()
+      val counts  = LinkCounters()
       val loss    = PacketLoss(latency, 5, 6)
       val packets =
         if isDatagrams then Packets.Datagrams(loss, duplicates, SplitMix64(7))
         else if loss.isAny then
           Packets.Tcp(loss, Retransmission.timeout(latency), Retransmission.overtaken(latency))
         else Packets.Whole
-      val line = Flow.fromGraph(DelayLine(open, None, () => sinceStart, maxBytes, lost, counts, LongAdder(), packets = packets))
+      val line = Flow.fromGraph(DelayLine(
+        open,
+        None,
+        () => sinceStart,
+        maxBytes,
+        lost,
+        counts,
+        LongAdder(),
+        packets = packets
+      ))
       body(Line(line, () => sinceStart.toMillis, counts))
     .value
 
@@ -201,7 +210,7 @@ class DelayLineSuite extends munit.FunSuite:
       def ms            = clock.now().since(start).toMillis
       val bottleneck    = Bottleneck(Bandwidth.ofBitsPerSecond(50_000_000))
       val counts        = LinkCounters()
-      def line = DelayLine(
+      def line          = DelayLine(
         _ => Delivery(LatencySampler(constant(20), 1, 2), Iterator.empty, None, LongAdder()),
         Some(bottleneck),
         () => clock.now().since(start),

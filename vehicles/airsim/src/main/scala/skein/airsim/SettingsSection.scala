@@ -36,9 +36,10 @@ final private[skein] class SettingsSection private (fields: Obj, path: String, s
   def fail(key: String, expected: String, found: String): Nothing =
     throw Misfit(SettingsError.Unexpected(at(key), expected, found))
 
-  def number(key: String, unless: Double, least: Double = -1e9, most: Double = 1e9): Double = read(key, unless, "a number"):
-    case Num(value) if value >= least && value <= most => value
-    case number: Num => fail(key, s"a number from ${plain(least)} to ${plain(most)}", number.render())
+  def number(key: String, unless: Double, least: Double = -1e9, most: Double = 1e9): Double =
+    read(key, unless, "a number"):
+      case Num(value) if value >= least && value <= most => value
+      case number: Num => fail(key, s"a number from ${plain(least)} to ${plain(most)}", number.render())
 
   def whole(key: String, unless: Int, least: Int, most: Int): Int =
     val found = number(key, unless, least, most)

@@ -123,7 +123,11 @@ abstract class VehicleClient private[airsim] (
     client.rpc.callAs[A](method, params :+ Str(name), options)
 
   /** Calls a getter whose answer states when it was valid. */
-  protected def stamped[A: Reader, B](method: String, params: Seq[Msg] = Seq(), options: CallOptions = getter)(
+  protected def stamped[A: Reader, B](
+      method: String,
+      params: Seq[Msg] = Seq(),
+      options: CallOptions = getter
+  )(
       read: A => (B, Instant)
   ): Future[Either[RpcError, Stamped[B]]] =
     client.rpc

@@ -6,7 +6,7 @@ import skein.signal.{Kinematics, Stamped}
 
 private[skein] object VehicleErrors:
 
-  private val noReading = VehicleError.TimedOut("the vehicle's sensors have no reading")
+  val noReading: VehicleError = VehicleError.TimedOut("the vehicle's sensors have no reading")
 
   /** The reading that a port returns for a vehicle's state. */
   def reading(

@@ -145,7 +145,9 @@ object OffboardSetpoint:
         place(2),
         (velocity(0), velocity(1), velocity(2)),
         inBody,
-        turn.map(heading => Yaw.Towards(Radians(heading))).orElse(rate.map(Yaw.Turning(_))).getOrElse(Yaw.Still)
+        turn.map(heading => Yaw.Towards(Radians(heading))).orElse(rate.map(Yaw.Turning(_))).getOrElse(
+          Yaw.Still
+        )
       ))
 
   extension (move: OffboardSetpoint.Move)

@@ -96,7 +96,8 @@ final class FrameReader(signing: Option[Signing] = None):
       case Start | StartVersion1 => Step.Cut
       case _                     => skip(1)(_.copy(garbageBytes = counted.garbageBytes + 1))
 
-  /** Verifies a frame's checksum, which ends at `frameEnd`; the frame begins at `at` and has `length` bytes. */
+  /** Verifies a frame's checksum, which ends at `frameEnd`; the frame begins at `at` and has `length` bytes.
+    */
   private def checked(all: Array[Byte], at: Int, frameEnd: Int, length: Int, id: Int, isWhole: Boolean)(
       valid: Definition[? <: Message] => Step
   ): Step =

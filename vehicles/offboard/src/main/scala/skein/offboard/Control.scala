@@ -324,6 +324,9 @@ final case class Control(
         case _ => before
 
 object Control:
+  /** The step of a request, by its token, at a time. */
+  type Request = (Control, Long, Instant) => Step
+
   type Answer = Either[VehicleError, Boolean | Stamped[Kinematics]]
 
   /** A new state, with messages to send.

@@ -53,11 +53,7 @@ final class MavlinkLink private (
   def clocks: Option[ClockAlignment] = controls(systems.head).clock.map(_.alignment)
 
   /** Sends a request to one vehicle's control. */
-  private[offboard] def ask(number: Int)(what: (
-      Control,
-      Long,
-      Instant
-  ) => Control.Step): Future[Control.Answer] =
+  private[offboard] def ask(number: Int)(what: Control.Request): Future[Control.Answer] =
     val token   = tokens.getAndIncrement()
     val promise = Promise[Control.Answer]()
     waiting(token) = promise

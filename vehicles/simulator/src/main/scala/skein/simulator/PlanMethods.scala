@@ -22,7 +22,6 @@ private[simulator] object PlanMethods extends MethodList:
             if planned.nonEmpty then simulation.follow(index, sequence, planned)
             answer(true)
 
-
   private def orders(simulation: Simulated, call: PlanCall): Either[String, Move.Plan] =
     Expect.each(call.moves)(move =>
       order(simulation, move, call.vehicle).map(flies => (at = move.at, action = flies))

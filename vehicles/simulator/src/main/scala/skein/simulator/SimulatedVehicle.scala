@@ -16,18 +16,18 @@ import skein.vehicle.NoisySensor
 private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings, worldOrigin: GeoLocation):
   val home: GeoLocation = worldOrigin.locate(settings.startNed)
 
-  protected var sampledAt: Instant     = Instant.Epoch
-  protected var resetAt: Instant       = Instant.Epoch
-  private var gpsFrom: Instant         = Instant.Epoch
-  protected var controlled: Boolean    = false
+  protected var sampledAt: Instant             = Instant.Epoch
+  protected var resetAt: Instant               = Instant.Epoch
+  private var gpsFrom: Instant                 = Instant.Epoch
+  protected var controlled: Boolean            = false
   protected var touched: Option[CollisionInfo] = None
   private var lastMet: Option[CollisionInfo]   = None
-  private var met                      = 0L
-  protected val obstacles: Obstacles   = Obstacles(settings.startNed)
-  private var startedAt                = Instant.Epoch
-  private var sensor                   = Option.empty[NoisySensor]
-  private var isSensing                = () => true
-  private var lastSensed               = Option.empty[Sensed]
+  private var met                              = 0L
+  protected val obstacles: Obstacles           = Obstacles(settings.startNed)
+  private var startedAt                        = Instant.Epoch
+  private var sensor                           = Option.empty[NoisySensor]
+  private var isSensing                        = () => true
+  private var lastSensed                       = Option.empty[Sensed]
 
   /** The vehicle's kind as a word, for messages. */
   def kind: String

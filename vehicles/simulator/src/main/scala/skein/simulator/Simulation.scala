@@ -3,15 +3,15 @@ package skein.simulator
 import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.VehicleSettings
-import skein.rpc.{Encoded, Rpclib}
+import skein.rpc.{Encoded, RpcRequest, Rpclib}
 import skein.units.*
 import upack.{Bool, Msg}
 
-/** A received call; `token` identifies its answer.
-  *
-  * @param client the caller: see [[Simulation.depart]]
+/** A received call; `token` identifies its answer. The caller is the request's connection: see
+  * [[Simulation.depart]].
   */
-final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg], client: Long = 0)
+final case class SimulatorCall(token: Long, request: RpcRequest):
+  export request.{connection as client, method, params}
 
 /** The answer to a call: its result, a deferred result, or the text of its error. */
 final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | DeferredResult])
@@ -81,13 +81,10 @@ final class Simulation(
     // Otherwise every call received during a long step would wait for its share of it.
     if continuing.isEmpty then advance(at)
     if isControl(call.method) then
-      workers.drop(supersedes(call.method, call.params, _)).foreach(giveUp)
+      workers.drop(other => supersedes(call.request, other.request)).foreach(giveUp)
       run(call, at)
     else workers.offer(call)
     settle(at)
-
-  private def supersedes(method: String, params: IndexedSeq[Msg], other: SimulatorCall): Boolean =
-    Simulation.supersedes(method, params, other.method, other.params)
 
   /** Handles a client that sends no further calls. Its calls no longer hold workers; its vehicles continue
     * its last commands.
@@ -321,13 +318,9 @@ object Simulation:
   /** Whether a call makes an earlier one, which has not been run, needless: a move before a hover of its
     * vehicle, or before a reset.
     */
-  private[simulator] def supersedes(
-      method: String,
-      params: IndexedSeq[Msg],
-      earlier: String,
-      earlierParams: IndexedSeq[Msg]
-  ): Boolean =
-    Moves(earlier) && earlier != "hover" && (method == "reset" ||
-      method == "hover" && params.nonEmpty && earlierParams.lastOption == params.lastOption)
+  private[simulator] def supersedes(request: RpcRequest, earlier: RpcRequest): Boolean =
+    Moves(earlier.method) && earlier.method != "hover" && (request.method == "reset" ||
+      request.method == "hover" && request.params.nonEmpty &&
+      earlier.params.lastOption == request.params.lastOption)
 
   val methodNames: Set[String] = named.keySet

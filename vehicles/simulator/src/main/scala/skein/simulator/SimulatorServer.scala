@@ -119,9 +119,9 @@ object SimulatorServer:
       step: Option[Span] = None
   )(using system: ActorSystem): Future[SimulatorServer] =
     given ExecutionContext = ExecutionContext.parasitic
-    val beside    = Beside(system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId))
-    val running   = Running(Simulation(settings, clock.now()), onlooker, step, clock, beside)
-    val simulator = system.spawnAnonymous(Behaviors.withTimers(running.behavior))
+    val beside             = Beside(system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId))
+    val running            = Running(Simulation(settings, clock.now()), onlooker, step, clock, beside)
+    val simulator          = system.spawnAnonymous(Behaviors.withTimers(running.behavior))
     def forget(event: ServerEvent): Unit = event match
       case ServerEvent.Finished(connection)  => simulator ! Message.Gone(connection, isForgotten = false)
       case ServerEvent.Closed(connection, _) =>
@@ -303,21 +303,13 @@ object SimulatorServer:
             case None       => left = 0
             case Some(call) => run(call)
         else
-          lines.takeUrgent(supersedes) match
+          lines.takeUrgent((call, earlier) => Simulation.supersedes(call.request, earlier.request)) match
             case None                     => left = 0
             case Some((call, superseded)) =>
               superseded.foreach(_.answer.success(Right(Bool(false))))
               run(call)
 
-    private def supersedes(call: Call, earlier: Call) =
-      val (one, other) = (call.request, earlier.request)
-      Simulation.supersedes(one.method, one.params, other.method, other.params)
-
     private def run(call: Call): Unit =
-      val Call(request, _) = call
       waiting.update(nextToken, call)
-      simulation.receive(
-        SimulatorCall(nextToken, request.method, request.params, request.connection),
-        clock.now()
-      )
+      simulation.receive(SimulatorCall(nextToken, call.request), clock.now())
       nextToken += 1

@@ -225,17 +225,10 @@ final class World(
 
   private def takeTurn(vehicle: Int): Unit =
     for running <- moves(vehicle) do
-      running.move.turn(multirotor(vehicle), clock.since(running.startedAt)) match
-        case MoveProgress.Going(goal) =>
-          multirotor(vehicle).command(goal, clock)
-          goOn(vehicle, running)
-        case MoveProgress.Idle                => goOn(vehicle, running)
-        case MoveProgress.Ended(result, goal) =>
-          goal.foreach(multirotor(vehicle).command(_, clock))
-          end(vehicle, result)
-
-  private def goOn(vehicle: Int, running: Running): Unit =
-    moves(vehicle) = Some(running.copy(dueAt = clock + PathFollowing.Period))
+      val one = multirotor(vehicle)
+      running.move.turn(one, clock.since(running.startedAt)).performed(one, clock) match
+        case None         => moves(vehicle) = Some(running.copy(dueAt = clock + PathFollowing.Period))
+        case Some(result) => end(vehicle, result)
 
   private def end(vehicle: Int, result: Boolean): Unit =
     moves(vehicle).foreach(running => ended += Ended(vehicle, running.token, result))
