@@ -113,7 +113,7 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   def worldPosition(at: Instant): Vector3 = settings.startNed + positionAt(at)
 
-  /** True motion, world NED. */
+  /** The vehicle's true motion; its position is one in the world, NED. */
   def worldMotion(at: Instant): Kinematics =
     Kinematics(worldPosition(at), velocityAt(at), orientation, angularVelocityFrd)
 

@@ -29,7 +29,6 @@ import java.util.random.RandomGenerator;
 public final class Redirect {
   private static final ThreadLocal<Environment> ENVIRONMENT = new ThreadLocal<>();
 
-  /** The present of the calling thread. */
   private static final InstantSource NOW =
       new InstantSource() {
         @Override
