@@ -62,7 +62,7 @@ abstract class VehicleClient private[airsim] (
       ))
 
   /** The vehicle's start in geographic coordinates. */
-  def home(): Future[Either[RpcError, GeoLocation]] = get[GeoPoint]("getHomeGeoPoint").map(_.map(located))
+  def home(): Future[Either[RpcError, GeoLocation]] = get[GeoPoint]("getHomeGeoPoint").map(_.map(_.toLocation))
 
   // ---- sensors; an empty name means the first of its kind
 
@@ -77,7 +77,7 @@ abstract class VehicleClient private[airsim] (
 
   def gps(sensor: String = ""): Future[Either[RpcError, Stamped[GpsReading]]] =
     stamped("getGpsData", Seq(Str(sensor)), sensors): (data: GpsData) =>
-      val reading = GpsReading(located(data.gnss.geo_point), data.gnss.velocity.toVector, data.is_valid)
+      val reading = GpsReading(data.gnss.geo_point.toLocation, data.gnss.velocity.toVector, data.is_valid)
       (reading, data.time_stamp)
 
   def barometer(sensor: String = ""): Future[Either[RpcError, Stamped[BarometerReading]]] =
@@ -154,9 +154,6 @@ abstract class VehicleClient private[airsim] (
       state.orientation.toQuaternion,
       state.angular_velocity.toVector
     )
-
-  private def located(point: GeoPoint): GeoLocation =
-    GeoLocation(point.latitude, point.longitude, Metres(point.altitude))
 
   protected def real(value: Double): Msg = Float32(value.toFloat)
 

@@ -165,11 +165,8 @@ object OffboardSetpoint:
         val state        = motion.state
         val (vn, ve, vd) = move.velocity
         val asked        = Vector3(vn.getOrElse(0), ve.getOrElse(0), vd.getOrElse(0))
-        val yaw          = state.orientation.yawRad
-        val velocity     =
-          if move.inBody then
-            Quaternion(StrictMath.cos(yaw / 2), 0, 0, StrictMath.sin(yaw / 2)).toWorld(asked)
-          else asked
+        val heading      = Quaternion.ofYaw(state.orientation.yawRad)
+        val velocity     = if move.inBody then heading.toWorld(asked) else asked
         val goal = Vector3(
           move.north.getOrElse(state.positionNed.x),
           move.east.getOrElse(state.positionNed.y),

@@ -56,9 +56,7 @@ private[simulator] object SceneMethods extends MethodList:
       answer(simulation.objects.boxes.sees(place(simulation, from), place(simulation, to)))
   none("simGetWorldExtents"): simulation =>
     def corner(sign: Int, down: Double) =
-      val there =
-        simulation.settings.world.origin.locate(Vector3(sign * ExtentM, sign * ExtentM, down))
-      GeoPoint(there.latitudeDeg, there.longitudeDeg, there.altitude.value.toFloat)
+      GeoPoint(simulation.settings.world.origin.locate(Vector3(sign * ExtentM, sign * ExtentM, down)))
     answer(Seq(corner(-1, 0), corner(1, -ExtentM)))
   // Clients have no files written.
   many[(Vector3r, Int, Int, Int, Float, String)]("simCreateVoxelGrid")((_, _) => answer(false))
@@ -78,8 +76,7 @@ private[simulator] object SceneMethods extends MethodList:
       val added   = VehicleSettings(name, start, vehicleType = kind, sensors = sensors)
       val known   = VehicleLimits.flies(added) && !simulation.objects.exists(name)
       if known then
-        val q   = pose.orientation.toQuaternion.normalized
-        val yaw = StrictMath.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+        val yaw = pose.orientation.toQuaternion.normalized.yawRad
         simulation.addVehicle(added.copy(yaw = Radians(yaw)))
       answer(known)
 
@@ -110,5 +107,4 @@ private[simulator] object SceneMethods extends MethodList:
       state.angular_acceleration.toVector.norm <= 1e6
 
   private def place(simulation: Simulated, point: GeoPoint): Vector3 =
-    GeoLocation(point.latitude, point.longitude, Metres(point.altitude))
-      .nedFrom(simulation.settings.world.origin)
+    point.toLocation.nedFrom(simulation.settings.world.origin)

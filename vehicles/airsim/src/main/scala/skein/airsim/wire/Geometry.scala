@@ -1,6 +1,6 @@
 package skein.airsim.wire
 
-import skein.units.{GeoLocation, Quaternion, Vector3}
+import skein.units.{GeoLocation, Metres, Quaternion, Vector3}
 import upickle.default.ReadWriter
 
 /** AirSim's vector: 32-bit components, in the frame and unit of the field that holds it. */
@@ -29,7 +29,8 @@ private[skein] object Pose:
 
 /** Degrees and metres above sea level; latitude and longitude are 64-bit on the wire. */
 final private[skein] case class GeoPoint(latitude: Double, longitude: Double, altitude: Float)
-    derives ReadWriter
+    derives ReadWriter:
+  def toLocation: GeoLocation = GeoLocation(latitude, longitude, Metres(altitude))
 
 private[skein] object GeoPoint:
   def apply(place: GeoLocation): GeoPoint =
