@@ -1,5 +1,6 @@
 package skein.vtime.agent;
 
+import java.io.BufferedOutputStream;
 import java.io.IOException;
 import java.io.UncheckedIOException;
 import java.net.URL;
@@ -57,7 +58,7 @@ public final class RewriteJars {
           if (after != before) changed.put(entry.getName(), after);
         }
         if (changed.isEmpty() && zip.getEntry(AGENT) == null) return;
-        try (var out = new ZipOutputStream(Files.newOutputStream(rewritten))) {
+        try (var out = new ZipOutputStream(new BufferedOutputStream(Files.newOutputStream(rewritten)))) {
           for (var entry : Collections.list(zip.entries())) {
             var bytes = changed.get(entry.getName());
             write(out, entry.getName(), entry.getTime(), bytes == null ? read(zip, entry) : bytes);

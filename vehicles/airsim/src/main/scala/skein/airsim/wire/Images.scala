@@ -3,8 +3,7 @@ package skein.airsim.wire
 import skein.rpc.{Encoded, MessageWriter}
 import skein.units.Instant
 import upack.Binary
-import upickle.default.{ReadWriter, writeMsg}
-import upickle.implicits.serializeDefaults
+import upickle.default.writeMsg
 
 /** A request for one image; `image_type` is an `ImageKind`'s number. Cosys-AirSim's additional key is left
   * out; its server does not need it.
@@ -14,7 +13,7 @@ final private[skein] case class ImageRequest(
     image_type: Int,
     pixels_as_float: Boolean,
     compress: Boolean
-) derives ReadWriter
+) derives Fields
 
 /** One image of an answer.
   *
@@ -24,7 +23,6 @@ final private[skein] case class ImageRequest(
   * @param camera_position the camera's position in the frame of its vehicle, NED, m
   * @param time_stamp time of exposure, on the simulator's clock
   */
-@serializeDefaults(true)
 final private[skein] case class ImageResponse(
     image_data_uint8: Array[Byte] = Array.emptyByteArray,
     image_data_float: Array[Float] = Array.emptyFloatArray,
@@ -38,7 +36,7 @@ final private[skein] case class ImageResponse(
     width: Int = 0,
     height: Int = 0,
     image_type: Int = 0
-) derives ReadWriter
+) derives Fields
 
 private[skein] object ImageResponse:
 

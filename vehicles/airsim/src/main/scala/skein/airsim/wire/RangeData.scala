@@ -2,8 +2,7 @@ package skein.airsim.wire
 
 import skein.rpc.{Encoded, MessageWriter}
 import skein.units.Instant
-import upickle.default.{ReadWriter, writeMsg}
-import upickle.implicits.serializeDefaults
+import upickle.default.writeMsg
 
 /** One lidar scan.
   *
@@ -12,13 +11,12 @@ import upickle.implicits.serializeDefaults
   * @param pose the lidar's pose, in its vehicle's frame
   * @param segmentation one id for each point; Cosys-AirSim sends names instead, which are skipped
   */
-@serializeDefaults(true)
 final private[skein] case class LidarData(
     time_stamp: Instant = Instant.Epoch,
     point_cloud: Array[Float] = Array.emptyFloatArray,
     pose: Pose = Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0)),
     segmentation: Array[Int] = Array.emptyIntArray
-) derives ReadWriter
+) derives Fields
 
 private[skein] object LidarData:
   /** Encodes the answer to `getLidarData`, keys in AirSim's order. */
@@ -35,4 +33,4 @@ final private[skein] case class DistanceSensorData(
     min_distance: Float,
     max_distance: Float,
     relative_pose: Pose
-) derives ReadWriter
+) derives Fields
