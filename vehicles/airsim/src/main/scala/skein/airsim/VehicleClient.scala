@@ -62,7 +62,8 @@ abstract class VehicleClient private[airsim] (
       ))
 
   /** The vehicle's start in geographic coordinates. */
-  def home(): Future[Either[RpcError, GeoLocation]] = get[GeoPoint]("getHomeGeoPoint").map(_.map(_.toLocation))
+  def home(): Future[Either[RpcError, GeoLocation]] =
+    get[GeoPoint]("getHomeGeoPoint").map(_.map(_.toLocation))
 
   // ---- sensors; an empty name means the first of its kind
 

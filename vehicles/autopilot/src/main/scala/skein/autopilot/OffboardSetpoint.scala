@@ -167,7 +167,7 @@ object OffboardSetpoint:
         val asked        = Vector3(vn.getOrElse(0), ve.getOrElse(0), vd.getOrElse(0))
         val heading      = Quaternion.ofYaw(state.orientation.yawRad)
         val velocity     = if move.inBody then heading.toWorld(asked) else asked
-        val goal = Vector3(
+        val goal         = Vector3(
           move.north.getOrElse(state.positionNed.x),
           move.east.getOrElse(state.positionNed.y),
           move.down.getOrElse(state.positionNed.z)

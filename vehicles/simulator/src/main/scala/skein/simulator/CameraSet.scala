@@ -9,7 +9,9 @@ import skein.units.{Quaternion, Vector3}
 final private[simulator] class CameraSet(listed: (String, Camera)*):
   val places: Map[String, Camera] = listed.toMap
 
-  /** Other names of these cameras: their numbers; none, and `fpv` where no camera is called so, are the first. */
+  /** Other names of these cameras: their numbers; none, and `fpv` where no camera is called so, are the
+    * first.
+    */
   val aliases: Map[String, String] =
     val first = Seq("", "fpv").map(_ -> listed.head._1)
     (first ++ listed.zipWithIndex.map((camera, number) => s"$number" -> camera._1)).toMap -- places.keys
