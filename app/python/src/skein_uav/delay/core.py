@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from .arrays import Tree, beside, cast, each, leaf, namespace, on
 from .history import History
-from .pending import Pending, PendingElsewhere
+from .pending import OneHot, Pending, PendingElsewhere, PendingOneHot
 from .profiles import Trace, delays
 from .schedule import MOST_ROWS, Schedule, spawned
 
@@ -263,7 +263,10 @@ class Delay:
             self._actions.put(at + 1, actions)
             if self._pending:
                 newest = actions if self._encode is None else self._encode(actions)
-                each(_add, self._told, newest)
+                if self._has_room:  # then they are one array
+                    self._told.add(newest)
+                else:
+                    each(lambda told, one: told.add(one), self._told, newest)
         if self._is_shared:
             return self._mean(at)
         rows = self._actions.rows
@@ -300,7 +303,9 @@ class Delay:
                 self._actions.rows[places] = self._idles[which]
             else:
                 self._actions.put_where(which, at, self._idles)
-            if self._pending:
+            if self._pending and self._has_room:
+                self._told.void(which)
+            elif self._pending:
                 each(lambda told: told.void(which), self._told)
 
     def _look(self, at: int) -> Seen | np.ndarray:
@@ -394,7 +399,9 @@ class Delay:
 
         self._idles = each(filled, actions, idles)
         self._actions = History(self._idles, self._kept, self._room + 1, self._count)
-        if self._pending:
+        if self._pending and self._xp is np and isinstance(self._encode, OneHot):
+            self._told, self._encode = PendingOneHot(self._idles, self._pending, self._encode), None
+        elif self._pending:
             idles = self._idles if self._encode is None else self._encode(self._idles)
             kind = Pending if self._xp is np else PendingElsewhere
             self._told = each(lambda one: kind(one, self._pending), idles)
@@ -444,7 +451,3 @@ class Delay:
         self._arrived = list(on(self._like, first.astype(np.intp)))
         self._most = schedule.seen[block].max(1)
         self._weights = on(self._like, schedule.weights[block]) if self._is_shared else None
-
-
-def _add(told: Pending | PendingElsewhere, newest: Any) -> None:
-    told.add(newest)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import changed, namespace
+from .arrays import changed, namespace, on
 
 _ROOM = 16
 """Decisions that fit after the pending ones before these are moved."""
@@ -34,11 +34,7 @@ class Pending:
         self._idle = np.tile(one[:, :1] if (one == one[:, :1]).all() else one, (number, 1))
 
     def add(self, newest: Any) -> None:
-        if self._end == len(self._rows):
-            self._rows[: self._length] = self.columns()
-            self._end = self._length
-        begin, self._end = self._end, self._end + self._each
-        self._rows[begin : self._end] = newest if newest.ndim == 1 else newest.reshape(len(newest), -1).T
+        self._next()[:] = newest if newest.ndim == 1 else newest.reshape(len(newest), -1).T
 
     def void(self, which: Any) -> None:
         """Replaces the decisions of these environments, given by indices, by idle ones."""
@@ -52,6 +48,34 @@ class Pending:
     def by_environment(self) -> Any:
         """The decisions, shape (environments, decisions, …)."""
         return self.columns().T.reshape(-1, self._length // self._each, *self._shape).copy()
+
+    def _next(self) -> Any:
+        if self._end == len(self._rows):
+            self._rows[: self._length] = self.columns()
+            self._end = self._length
+        begin, self._end = self._end, self._end + self._each
+        return self._rows[begin : self._end]
+
+
+class OneHot:
+    """Encodes decisions, of these numbers, by a one among zeros, shape (environments, numbers)."""
+
+    def __init__(self, numbers: np.ndarray) -> None:
+        self.numbers = numbers[:, None]
+
+    def __call__(self, decisions: Any) -> Any:
+        return (on(decisions, self.numbers) == decisions).T
+
+
+class PendingOneHot(Pending):
+    """Encodes the decisions itself, where it keeps them."""
+
+    def __init__(self, idle: Any, number: int, encode: OneHot) -> None:
+        super().__init__(encode(idle), number)
+        self._numbers = encode.numbers
+
+    def add(self, newest: Any) -> None:
+        np.equal(self._numbers, newest, out=self._next())
 
 
 class PendingElsewhere:
@@ -68,7 +92,3 @@ class PendingElsewhere:
 
     def by_environment(self) -> Any:
         return self._decisions
-
-
-def pending(idle: Any, number: int) -> Pending | PendingElsewhere:
-    return (Pending if type(idle) is np.ndarray else PendingElsewhere)(idle, number)

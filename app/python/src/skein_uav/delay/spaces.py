@@ -9,8 +9,9 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.spaces import Box, Dict, Discrete, MultiBinary, MultiDiscrete, Tuple
 
-from .arrays import Tree, cast, joined, namespace, on
+from .arrays import Tree, cast, joined, namespace
 from .core import Seen
+from .pending import OneHot
 
 
 class Telling:
@@ -95,8 +96,7 @@ def encoding(observation: gym.Space, action: gym.Space) -> Callable[[Tree], Tree
     """The encoding of pending actions next to such an observation; None: unchanged."""
     if not _is_flat(observation) or not isinstance(action, Discrete):
         return None
-    values = np.arange(action.start, action.start + action.n)[:, None]
-    return lambda numbers: (on(numbers, values) == numbers).T
+    return OneHot(np.arange(action.start, action.start + action.n))
 
 
 def _is_flat(observation: gym.Space) -> bool:
