@@ -222,6 +222,7 @@ class Delay:
         if self._observations is None:
             self._like = leaf(observations)
             self._xp = namespace(self._like)
+            self._maximum = self._xp.maximum
             self._room = self._rows_at_once(observations)
             self._has_room = self.spare > 0 and self._xp is np and self._predict is None
             self._observations = History(observations, self._kept, self._room, self._count, self._has_room)
@@ -230,11 +231,6 @@ class Delay:
             links, self._of_links = self._schedule.count, None
             if links < self._count:
                 self._of_links = on(self._like, np.arange(-(-self._count // links) * links).reshape(-1, links))
-            if self._xp is np:
-                self._newest = np.empty((2, self._count), np.intp)
-                if self._of_links is not None:
-                    self._shared = np.empty((2, *self._of_links.shape), np.intp)
-                    self._of_all = self._shared.reshape(2, -1)[:, : self._count]
             self._began = self._row(0)
         if self._actions is None and actions is not None:
             self._allocate(actions)
@@ -311,15 +307,8 @@ class Delay:
     def _look(self, at: int) -> Seen | np.ndarray:
         arrived = self._arrived[at]
         if self._of_links is not None:  # environments beyond the links share them in turns
-            if self._xp is np:
-                np.add(arrived, self._of_links, out=self._shared)
-                arrived = self._of_all
-            else:
-                arrived = (arrived + self._of_links).reshape(2, -1)[:, : self._count]
-        if self._xp is np:
-            np.maximum(arrived, self._began, out=self._newest)
-        else:
-            self._newest = self._xp.maximum(arrived, self._began)
+            arrived = (arrived + self._of_links).reshape(2, -1)[:, : self._count]
+        self._newest = self._maximum(arrived, self._began)
         newest = self._newest[0]
         # The table ends with ages of 0: those of this row.
         ages = self._ages[(self._room - 1 - at) * self._count :]
@@ -362,7 +351,7 @@ class Delay:
         newest = -(-at // self._every) - 1
         for step in range(int(self._most[at]) + self._ahead):
             chosen = ((at - lag + step - self._ahead) // self._every).clip(None, newest) * self._every
-            places = self._xp.maximum(self._row(chosen + 1), self._began)
+            places = self._maximum(self._row(chosen + 1), self._began)
             later = self._predict(observation, self._actions.take(places))
             goes = step < lag + self._ahead
             observation = each(lambda old, new: self._xp.where(beside(goes, old), new, old), observation, later)
