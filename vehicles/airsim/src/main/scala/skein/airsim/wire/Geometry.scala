@@ -1,6 +1,6 @@
 package skein.airsim.wire
 
-import skein.units.{GeoLocation, Quaternion, Vector3}
+import skein.units.{GeoLocation, Metres, Quaternion, Vector3}
 
 /** AirSim's vector: 32-bit components, in the frame and unit of the field that holds it. */
 final private[skein] case class Vector3r(x_val: Float, y_val: Float, z_val: Float) derives Fields:
@@ -22,9 +22,14 @@ private[skein] object Quaternionr:
 /** A pose: position in m, from the vehicle's own start, NED. */
 final private[skein] case class Pose(position: Vector3r, orientation: Quaternionr) derives Fields
 
+private[skein] object Pose:
+  def apply(position: Vector3, orientation: Quaternion): Pose =
+    Pose(Vector3r(position), Quaternionr(orientation))
+
 /** Degrees and metres above sea level; latitude and longitude are 64-bit on the wire. */
 final private[skein] case class GeoPoint(latitude: Double, longitude: Double, altitude: Float)
-    derives Fields
+    derives Fields:
+  def toLocation: GeoLocation = GeoLocation(latitude, longitude, Metres(altitude))
 
 private[skein] object GeoPoint:
   def apply(place: GeoLocation): GeoPoint =

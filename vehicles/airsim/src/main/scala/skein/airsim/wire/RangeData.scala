@@ -2,7 +2,6 @@ package skein.airsim.wire
 
 import skein.rpc.{Encoded, MessageWriter}
 import skein.units.Instant
-import upack.Str
 import upickle.default.writeMsg
 
 /** One lidar scan.
@@ -22,15 +21,10 @@ final private[skein] case class LidarData(
 private[skein] object LidarData:
   /** Encodes the answer to `getLidarData`, keys in AirSim's order. */
   def encode(scan: LidarData): Encoded = MessageWriter.encode: out =>
-    out.map(4)
-    out.value(Str("time_stamp"))
-    out.value(writeMsg(scan.time_stamp))
-    out.value(Str("point_cloud"))
-    out.floats(scan.point_cloud)
-    out.value(Str("pose"))
-    out.value(writeMsg(scan.pose))
-    out.value(Str("segmentation"))
-    out.integers(scan.segmentation)
+    val small = scan.copy(point_cloud = Array.emptyFloatArray, segmentation = Array.emptyIntArray)
+    out.structure(writeMsg(small)):
+      case "point_cloud"  => out.floats(scan.point_cloud)
+      case "segmentation" => out.integers(scan.segmentation)
 
 /** Distances in m; `relative_pose` is the sensor's, on its vehicle. */
 final private[skein] case class DistanceSensorData(
