@@ -38,34 +38,17 @@ object BenchmarkTables:
       )
   )
 
-  private def cells(rows: Vector[BenchmarkRow]) = TextTable(
-    Vector(
-      "<task",
-      "<world",
-      "<link",
-      "<entry",
-      "flights",
-      "truth",
-      "off %",
-      "±",
-      "violations",
-      "age ms",
-      "error p95 mm",
-      "<not flown"
-    ),
-    rows.map: row =>
-      Vector(
-        row.cell.task.name,
-        row.cell.world.name,
-        row.cell.link,
-        row.entry.name,
-        row.flights.size.toString,
-        row.truth.fold("")(_.fixed(3)),
-        row.meanOff.fold("")(off => (100 * off).signed(1)),
-        row.halfOff.fold("")(half => (100 * half).fixed(1)),
-        row.violations.fixed(2),
-        row.ageMs.fold("")(_.fixed(0)),
-        row.errorP95M.fold("")(error => (1000 * error).fixed(1)),
-        row.notFlown.headOption.getOrElse("")
-      )
+  private def cells(rows: Vector[BenchmarkRow]) = TextTable.of(rows)(
+    "<task"        -> (_.cell.task.name),
+    "<world"       -> (_.cell.world.name),
+    "<link"        -> (_.cell.link),
+    "<entry"       -> (_.entry.name),
+    "flights"      -> (_.flights.size.toString),
+    "truth"        -> (_.truth.fold("")(_.fixed(3))),
+    "off %"        -> (_.meanOff.fold("")(off => (100 * off).signed(1))),
+    "±"            -> (_.halfOff.fold("")(half => (100 * half).fixed(1))),
+    "violations"   -> (_.violations.fixed(2)),
+    "age ms"       -> (_.ageMs.fold("")(_.fixed(0))),
+    "error p95 mm" -> (_.errorP95M.fold("")(error => (1000 * error).fixed(1))),
+    "<not flown"   -> (_.notFlown.headOption.getOrElse(""))
   )

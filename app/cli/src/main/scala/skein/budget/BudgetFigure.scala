@@ -16,18 +16,18 @@ object BudgetFigure:
 
   /** @param maps the maps of one question at several periods */
   def apply(maps: Vector[BudgetMap]): Drawing =
-    val (_, unit) = maps.head.tolerance.shown(maps.head.unit)
+    val task      = maps.head.task
+    val (_, unit) = maps.head.tolerance.shown(task.unit)
     val scale     = scaleOf(maps)
     val cells     = maps.map(panel(_, scale))
-    val title     =
-      s"${maps.head.policy}: ${maps.head.objective}, how far off the paused truth, $unit".stripSuffix(", ")
-    val grid = Drawing.grid(cells, columns = cells.size.min(3))
-    val head = Drawing(
+    val title     = s"${task.label}: ${task.formula}, how far off the paused truth, $unit".stripSuffix(", ")
+    val grid      = Drawing.grid(cells, columns = cells.size.min(3))
+    val head      = Drawing(
       grid.width,
       62,
       Vector(
         Mark.Text(Point(62, 18), title, Theme.titleSize, Theme.titleColour, bold = true),
-        Mark.Text(Point(62, 33), maps.head.vehicles, Theme.tickSize)
+        Mark.Text(Point(62, 33), task.vehicles, Theme.tickSize)
       ) ++
         Legend(62, legend(maps)*).shapes.map(_.moved(0, 40))
     )
@@ -38,14 +38,14 @@ object BudgetFigure:
     val isPassed = maps.exists(contoursOf(_).nonEmpty)
     val hasGaps  = maps.exists(heatOf(_).values.exists(_.exists(_.isEmpty)))
     Option.when(isPassed)(Legend.line(
-      s"${maps.head.tolerance.text(maps.head.unit)} off the truth",
+      s"${maps.head.tolerance.text(maps.head.task.unit)} off the truth",
       limit
     )).toVector ++
       Option.when(hasGaps)(Legend.box("no such link: jitter without latency", empty))
 
   private def heatOf(map: BudgetMap): HeatMap =
     val per         = map.legs.perRoundTrip
-    val (factor, _) = map.tolerance.shown(map.unit)
+    val (factor, _) = map.tolerance.shown(map.task.unit)
     HeatMap(
       map.budget.meansMs.map(_ / per),
       map.budget.jittersMs.map(_ / per),
@@ -54,12 +54,12 @@ object BudgetFigure:
     )
 
   private def contoursOf(map: BudgetMap) =
-    val (factor, _) = map.tolerance.shown(map.unit)
+    val (factor, _) = map.tolerance.shown(map.task.unit)
     Vector(-1, 1).map(_ * map.tolerance.value * factor).flatMap(heatOf(map).contour)
 
   private def panel(map: BudgetMap, scale: ColourScale): Drawing =
     val per       = map.legs.perRoundTrip
-    val (_, unit) = map.tolerance.shown(map.unit)
+    val (_, unit) = map.tolerance.shown(map.task.unit)
     val budget    = map.budget
     val heat      = heatOf(map)
     val panel     = Panel(
@@ -82,8 +82,8 @@ object BudgetFigure:
       panel.bottom + 44,
       Vector(
         panel.title(
-          s"${map.loop} every ${map.periodMs.significant(4)} ms, " +
-            s"truth ${budget.truth.significant(4)} ${map.unit}".trim
+          s"${map.task.loop} every ${map.task.periodMs.significant(4)} ms, " +
+            s"truth ${budget.truth.significant(4)} ${map.task.unit}".trim
         ),
         Mark.box(panel.left, panel.top, panel.right, panel.bottom, empty)
       ) ++ heat.cells(panel, scale) ++ contours ++ marks ++
@@ -102,13 +102,13 @@ object BudgetFigure:
     val offs =
       for
         map <- maps
-        (factor, _) = map.tolerance.shown(map.unit)
+        (factor, _) = map.tolerance.shown(map.task.unit)
         i   <- map.budget.jittersMs.indices
         j   <- map.budget.meansMs.indices
         off <- map.budget.deviation(i, j)
         if off.abs * map.budget.per < WholeFlights.Never / (2 * map.episodes)
       yield off * factor
-    val leastReach = maps.map(map => 2 * map.tolerance.value * map.tolerance.shown(map.unit)._1).max
+    val leastReach = maps.map(map => 2 * map.tolerance.value * map.tolerance.shown(map.task.unit)._1).max
     val sizes      = offs.map(_.abs).sorted
     val reach      = sizes.lift((sizes.size * 0.97).toInt).getOrElse(1.0).max(leastReach)
     ColourScale.aroundZero(

@@ -6,21 +6,14 @@ import skein.optimise.{LatencyBudget, RunningStats}
 import skein.search.SearchResult
 import skein.signal.LatencyDistribution
 import skein.units.Decimals.{fixed, signed, significant}
-import upickle.default.{ReadWriter, macroRW, write}
 
 /** A map of one loop at one period, with its labels.
   *
-  * @param policy the policy's or the scenario's label
   * @param engine the engine that simulated it
   * @param marks named links, with the results over their measured round trips
   */
 final case class BudgetMap(
-    loop: String,
-    periodMs: Double,
-    objective: String,
-    unit: String,
-    vehicles: String,
-    policy: String,
+    task: BudgetTask,
     engine: Engine,
     tolerance: Tolerance,
     episodes: Int,
@@ -28,6 +21,7 @@ final case class BudgetMap(
     marks: Vector[BudgetMark],
     legs: Legs
 ):
+  import task.{formula, loop, periodMs, unit}
 
   /** One sentence on how much latency the policy tolerates, from the row of cells nearest to a jitter. */
   def sentence(atJitterMs: Double): String =
@@ -47,9 +41,9 @@ final case class BudgetMap(
     val off                              = factor * (mark.tally.mean - budget.truth) / budget.per
     def told(text: String, unit: String) = s"$text $unit".trim
     val came                             =
-      if !off.isFinite then s"$objective has no value"
+      if !off.isFinite then s"$formula has no value"
       else
-        s"$objective = ${SearchResult.interval(mark.tally, unit)}, ${told(off.signed(1), offUnit)} off the truth"
+        s"$formula = ${SearchResult.interval(mark.tally, unit)}, ${told(off.signed(1), offUnit)} off the truth"
     val where = if isOnMap(mark) then ""
     else
       s"; not drawn: the map ends before it, at ${ms(budget.meansMs.last)} " +
@@ -60,11 +54,11 @@ final case class BudgetMap(
   def isOnMap(mark: BudgetMark): Boolean =
     mark.roundTrip.mean.toMillis <= budget.meansMs.last && mark.roundTrip.jitter.toMillis <= budget.jittersMs.last
 
-  def csvRows: Vector[String] = cells.map: (cell, count) =>
-    Vector(periodMs, cell.meanMs, cell.jitterMs, cell.objective, cell.sd, count, cell.deviation).mkString(",")
+  def csvRows: Vector[String] = cells.map: cell =>
+    import cell.*
+    Vector(periodMs, meanMs, jitterMs, tally.mean, tally.sd, tally.count, deviation).mkString(",")
 
-  /** The simulated cells, each with its number of episodes. */
-  private def cells: Vector[(BudgetMap.Cell, Int)] =
+  private def cells: Vector[BudgetMap.Cell] =
     for
       (jitter, i) <- budget.jittersMs.zipWithIndex
       (mean, j)   <- budget.meansMs.zipWithIndex
@@ -72,10 +66,9 @@ final case class BudgetMap(
     yield BudgetMap.Cell(
       mean / legs.perRoundTrip,
       jitter / legs.perRoundTrip,
-      tally.mean,
-      tally.sd,
+      tally,
       budget.deviation(i, j).get
-    ) -> tally.count
+    )
 
   private def ms(roundTripMs: Double): String =
     (roundTripMs / legs.perRoundTrip).fixed(0)
@@ -95,55 +88,36 @@ object BudgetMap:
     * cells.
     */
   def json(maps: Vector[BudgetMap], atJitterMs: Double): String =
-    write(maps.map(Shown.of(_, atJitterMs)), indent = 1, escapeUnicode = true)
+    ujson.write(maps.map(shown(_, atJitterMs)), indent = 1, escapeUnicode = true)
 
-  private final case class Cell(
-      meanMs: Double,
-      jitterMs: Double,
-      objective: Double,
-      sd: Double,
-      deviation: Double
-  )
-
-  private final case class Shown(
-      sentence: String,
-      policy: String,
-      loop: String,
-      periodMs: Double,
-      vehicles: String,
-      engine: String,
-      objective: String,
-      unit: String,
-      latencies: String,
-      jitter: String,
-      tolerance: Double,
-      deviation: String,
-      truth: Double,
-      episodesPerCell: Int,
-      cells: Vector[Cell]
-  )
-
-  private object Shown:
-    given ReadWriter[Cell]  = macroRW
-    given ReadWriter[Shown] = macroRW
-
-    def of(map: BudgetMap, atJitterMs: Double): Shown = Shown(
-      map.sentence(atJitterMs),
-      map.policy,
-      map.loop,
-      map.periodMs,
-      map.vehicles,
-      map.engine.text,
-      map.objective,
-      map.unit,
-      map.legs.text,
-      "p99 - p50",
-      map.tolerance.value,
-      map.tolerance match
+  private def shown(map: BudgetMap, atJitterMs: Double) =
+    import map.{task, tolerance}
+    ujson.Obj(
+      "sentence"  -> map.sentence(atJitterMs),
+      "policy"    -> task.label,
+      "loop"      -> task.loop,
+      "periodMs"  -> task.periodMs,
+      "vehicles"  -> task.vehicles,
+      "engine"    -> map.engine.text,
+      "objective" -> task.formula,
+      "unit"      -> task.unit,
+      "latencies" -> map.legs.text,
+      "jitter"    -> "p99 - p50",
+      "tolerance" -> tolerance.value,
+      "deviation" -> (tolerance match
         case Tolerance.Share(_)  => "share of the truth"
-        case Tolerance.Within(_) => "distance from the truth"
-      ,
-      map.budget.truth,
-      map.episodes,
-      map.cells.map(_._1)
+        case Tolerance.Within(_) => "distance from the truth"),
+      "truth"           -> map.budget.truth,
+      "episodesPerCell" -> map.episodes,
+      "cells"           -> map.cells.map(cell =>
+        ujson.Obj(
+          "meanMs"    -> cell.meanMs,
+          "jitterMs"  -> cell.jitterMs,
+          "objective" -> cell.tally.mean,
+          "sd"        -> cell.tally.sd,
+          "deviation" -> cell.deviation
+        )
+      )
     )
+
+  private final case class Cell(meanMs: Double, jitterMs: Double, tally: RunningStats, deviation: Double)

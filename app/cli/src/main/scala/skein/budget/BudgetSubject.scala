@@ -7,22 +7,25 @@ import skein.search.{Conditions, Effort}
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 
-/** The subject of a budget: its simulation over links yields a value.
+/** What a budget simulates, for people.
   *
   * @param loop name of the loop
   * @param vehicles the vehicle model, in a line
   * @param label description of the policy, or of the scenario
   * @param formula formula of the value, in `unit`, which may be empty
   */
-trait BudgetSubject(
-    val loop: String,
-    val periodMs: Double,
-    val durationS: Double,
-    val vehicles: String,
-    val label: String,
-    val formula: String,
-    val unit: String
-):
+final case class BudgetTask(
+    loop: String,
+    periodMs: Double,
+    durationS: Double,
+    vehicles: String,
+    label: String,
+    formula: String,
+    unit: String
+)
+
+/** The subject of a budget: its simulation over links yields a value. */
+trait BudgetSubject(val task: BudgetTask):
   /** The value in a world that stands still while the controller decides; Left says why there is none.
     *
     * @param episodes number of the cells' episodes over which it is averaged if readings have errors; without
@@ -76,7 +79,7 @@ final class TeamSubject(
     effort: Engine => Effort,
     seed: Long,
     threads: Int
-) extends BudgetSubject(
+) extends BudgetSubject(BudgetTask(
       named.loopText,
       named.periodMs,
       named.durationS,
@@ -84,7 +87,8 @@ final class TeamSubject(
       label,
       objective.formula,
       objective.unit
-    ):
+    )):
+  import task.durationS
   private val batch     = flown.batch(threads)
   private val candidate = of(team)
 

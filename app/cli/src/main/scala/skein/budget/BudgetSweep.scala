@@ -29,25 +29,19 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
   /** Simulates the whole map, row by row.
     *
     * @param onProgress called with the number of episodes done
-    * @param onRow called with all rows known, after each row
     * @return the rows known, also of a cancelled map; Left says why there are none
     */
-  def map(
-      onProgress: Long => Unit,
-      isCancelled: () => Boolean,
-      onRow: BudgetSweep.Rows => Unit = _ => ()
-  ): Either[String, LatencyBudget] =
+  def map(onProgress: Long => Unit, isCancelled: () => Boolean): Either[String, LatencyBudget] =
     for
       truth <- subject.truth(episodes)
-      per   <- tolerance.per(truth).left.map(mistake => s"${subject.formula}: $mistake")
-      rows  <- rowsFrom(Vector.empty, onProgress, isCancelled, onRow)
+      per   <- tolerance.per(truth).left.map(mistake => s"${subject.task.formula}: $mistake")
+      rows  <- rowsFrom(Vector.empty, onProgress, isCancelled)
     yield LatencyBudget(axes.meansMs, axes.jittersMs.take(rows.size), rows, truth, per)
 
   @tailrec private def rowsFrom(
       above: BudgetSweep.Rows,
       onProgress: Long => Unit,
-      isCancelled: () => Boolean,
-      onRow: BudgetSweep.Rows => Unit
+      isCancelled: () => Boolean
   ): Either[String, BudgetSweep.Rows] =
     val rows = links.slice(above.size, (above.size.toLong + subject.rowsTogether).min(links.size).toInt)
     if rows.isEmpty then Right(above)
@@ -59,10 +53,8 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
         case Left(BudgetSubject.Stopped) if above.nonEmpty => Right(above)
         case Left(reason)                                  => Left(reason)
         case Right(tallies)                                =>
-          val next  = tallies.iterator
-          val known = above ++ rows.map(_.map(_.map(_ => next.next())))
-          onRow(known)
-          rowsFrom(known, onProgress, isCancelled, onRow)
+          val next = tallies.iterator
+          rowsFrom(above ++ rows.map(_.map(_.map(_ => next.next()))), onProgress, isCancelled)
 
   /** Number of episodes that the whole map takes. */
   def expected: Long = known.size.toLong * episodes

@@ -23,15 +23,7 @@ final class ClusterSubject(
     elsewhere: BlockExecutor,
     share: () => Double,
     blockEpisodes: Option[Int]
-) extends BudgetSubject(
-      here.loop,
-      here.periodMs,
-      here.durationS,
-      here.vehicles,
-      here.label,
-      here.formula,
-      here.unit
-    ):
+) extends BudgetSubject(here.task):
 
   export here.{cellEpisodes, engine, truth}
 

@@ -6,7 +6,7 @@ import skein.forward.*
 import skein.lanes.Engine
 import skein.loop.LoopKind
 import skein.optimise.{Objective, RunningStats, ScenarioTerm}
-import skein.scenario.{Scenario, Scenarios, Tracks}
+import skein.scenario.{Scenario, Scenarios}
 import skein.search.{Conditions, Effort, WholeFlights}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 
@@ -73,28 +73,25 @@ object ScenarioQuestion:
 
 /** A scenario with any measures, which are evaluated on whole flights.
   *
-  * @param over runs an episode, given by its number, on the calling thread: over a link, given by its round
-  *   trips; without one, in a world that stands still while the controller decides
+  * @param over episodes over a link with these round trips; None: in a world that stands still while the
+  *   controller decides
   */
 final class FlownSubject private (
     question: ScenarioQuestion,
-    vehicles: String,
-    told: Engine,
-    effort: Effort,
-    over: Option[LatencyDistribution] => Int => Either[String, Tracks]
-) extends BudgetSubject(
+    over: Option[LatencyDistribution] => WholeFlights
+) extends BudgetSubject(BudgetTask(
       question.conditions.loopText,
       question.conditions.periodMs,
       question.conditions.durationS,
-      vehicles,
+      over(None).vehicles,
       question.scenario.title,
       question.objective.formula,
       question.objective.unit
-    ):
+    )):
 
-  def engine(links: Vector[LatencyDistribution]): Engine = told
+  def engine(links: Vector[LatencyDistribution]): Engine = over(None).engine
 
-  def cellEpisodes(links: Vector[LatencyDistribution]): Int = effort.cellEpisodes
+  def cellEpisodes(links: Vector[LatencyDistribution]): Int = over(None).effort.cellEpisodes
 
   def truth(episodes: Int): Either[String, Double] =
     val each             = question.conditions.pausedEpisodes(episodes)
@@ -104,9 +101,7 @@ final class FlownSubject private (
     missing.headOption.toLeft(RunningStats.of(each)(flown).mean)
 
   private def value(link: Option[LatencyDistribution], episode: Int): Either[String, Option[Double]] =
-    over(link)(episode).map(
-      WholeFlights.sum(question.objective.measures, _, question.conditions.durationS)
-    )
+    over(link).sum(question.scenario, question.objective, episode)
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
     val done = AtomicLong()
@@ -129,35 +124,27 @@ object FlownSubject:
     * @param why no faster engine can be used
     */
   def forward(question: ScenarioQuestion, flown: Conditions.Resolved, why: String): FlownSubject =
-    def fly(timing: LoopTiming, link: Delays) = WholeFlights.forward(
-      timing,
-      link,
-      flown.vehicle.response,
-      question.conditions.durationS,
-      question.seed
-    )(question.scenario, _)
     FlownSubject(
       question,
-      flown.vehicle.description,
-      Engine.scalar(why),
-      Effort.OfScalarFlights,
-      _.fold(fly(flown.paused.timing, DelayTable.none))(roundTrip =>
-        fly(flown.timing, DelayTable.of(roundTrip))
-      )
+      link =>
+        WholeFlights.scalar(
+          if link.isEmpty then flown.paused else flown,
+          link.fold(DelayTable.none)(DelayTable.of),
+          question.seed,
+          why
+        )
     )
 
   /** Runs flights in virtual time, with the actual simulator, link, client and loop. */
   def virtual(question: ScenarioQuestion, loop: LoopKind, reason: String): FlownSubject =
     FlownSubject(
       question,
-      WholeFlights.SimulatorsQuadrotor,
-      WholeFlights.inVirtualTime(reason),
-      Effort.OfFlights,
       link =>
         WholeFlights.virtual(
           question.conditions,
           if link.isEmpty then LoopKind.Paused else loop,
           link.fold(LatencyProfile.none)(LatencyProfile.Steady("cell", _)),
-          question.seed
-        )(question.scenario, _)
+          question.seed,
+          reason
+        )
     )

@@ -35,7 +35,7 @@ final case class BenchmarkOptions(
 
 /** `./skein benchmark`: every loop and predictor in a fixed set of tasks, links and worlds. */
 final class BenchmarkCommand(using Scenarios)
-    extends OptionsCommand[BenchmarkOptions](
+    extends Command[BenchmarkOptions](
       "benchmark",
       "flies a fixed set of tasks over links and in worlds unlike the model, and ranks loops and predictors",
       ParserForClass[BenchmarkOptions]
@@ -44,14 +44,13 @@ final class BenchmarkCommand(using Scenarios)
   protected def execute(options: BenchmarkOptions): Either[String, Unit] =
     val all = BenchmarkSet.Published
     for
-      _ <- Expect.that(options.seeds >= 1 && options.seeds <= BenchmarkCommand.MostSeeds):
-        s"--seeds: expected 1 to ${BenchmarkCommand.MostSeeds}, got ${options.seeds}"
+      _     <- Expect.within("--seeds", options.seeds, 1, BenchmarkCommand.MostSeeds)
       tasks <- chosen("--task", options.task, all.tasks)(_.name)
       own   <- Expect.all(options.scenario)(name =>
         summon[Scenarios].kind(name).left.map("--scenario: " + _).map(_ => BenchmarkSet.Named.of(name))
       )
       entries <- chosen("--entry", options.entry, all.entries)(_.name)
-      folder  <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      folder  <- Expect.optional(options.out)(OutFolder.made("--out", _))
       set = all
         .copy(
           tasks =

@@ -59,7 +59,7 @@ final case class BudgetOptions(
 /** @param program the class whose `main` starts the commands
   */
 final class BudgetCommand(program: String)(using scenarios: Scenarios)
-    extends OptionsCommand[BudgetOptions](
+    extends Command[BudgetOptions](
       "budget",
       "says how much latency and jitter a policy or a scenario tolerates, and draws a map",
       ParserForClass[BudgetOptions]
@@ -78,15 +78,14 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       axes       <- axesOf(options, legs)
       _          <- Expect.that(options.atJitter.isEmpty || atJitterMs <= axes.jittersMs.last):
         s"--at-jitter: expected what the map has, up to ${(axes.jittersMs.last / legs.perRoundTrip).significant(3)} ms"
-      _ <- Expect.that(options.episodes.forall(count => count >= 1 && count <= MostEpisodes)):
-        s"--episodes: expected 1 to $MostEpisodes, got ${options.episodes.getOrElse(0)}"
+      _       <- Expect.optional(options.episodes)(Expect.within("--episodes", _, 1, MostEpisodes))
       periods <- Expect.all(options.period)(Span.parse(_).left.map("--period: " + _))
         .map(periods => if periods.isEmpty then Seq(BudgetCommand.Period) else periods)
       threads   <- options.forward.threadCount
       cluster   <- options.cluster.checked
       questions <- Expect.all(periods)(question(options, _)).map(_.toVector)
       subjects  <- Expect.all(questions)(_.subject(threads)).map(_.toVector)
-      _         <- Expect.that(subjects.forall(_.loop != LoopKind.Paused.label)):
+      _         <- Expect.that(subjects.forall(_.task.loop != LoopKind.Paused.label)):
         "--loop: the paused loop is the truth and feels no latency; expected another"
       folder <- OutFolder.made("--out", options.out)
       _      <- OutFolder.alone(folder):
@@ -111,7 +110,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     val shown = Shown(options.json.value)
     if options.json.value then Console.out.println(BudgetMap.json(maps, atJitterMs))
     for map <- maps do
-      shown.say(s"${map.policy}: ${map.sentence(atJitterMs)}")
+      shown.say(s"${map.task.label}: ${map.sentence(atJitterMs)}")
       map.markLines.foreach(line => shown.say(s"  $line"))
 
   private def question(options: BudgetOptions, period: Span): Either[String, BudgetQuestion] =
@@ -202,11 +201,12 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):
       def mapOf(subject: BudgetSubject) =
-        val what  = s"${subject.loop} every ${subject.periodMs.significant(4)} ms"
+        import subject.task
+        val what  = s"${task.loop} every ${task.periodMs.significant(4)} ms"
         val sweep = BudgetSweep(subject, axes, tolerance, options.episodes)
         shown.say(
-          s"$what, ${subject.vehicles}\n" +
-            s"${sweep.episodes} episodes of ${subject.durationS.significant(4)} s in each of " +
+          s"$what, ${task.vehicles}\n" +
+            s"${sweep.episodes} episodes of ${task.durationS.significant(4)} s in each of " +
             s"${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
         )
         val startedAt = System.nanoTime()
@@ -221,12 +221,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
             Expect.all(if stopped then Nil else BudgetCommand.Marked): (name, roundTrip) =>
               sweep.over(roundTrip).map(BudgetMark(name, roundTrip, _))
         yield BudgetMap(
-          subject.loop,
-          subject.periodMs,
-          subject.formula,
-          subject.unit,
-          subject.vehicles,
-          subject.label,
+          subject.task,
           sweep.engine,
           tolerance,
           sweep.episodes,

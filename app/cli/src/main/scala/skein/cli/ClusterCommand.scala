@@ -18,7 +18,7 @@ final case class ClusterCommandOptions(
 
 /** `./skein cluster certificates`: makes the certificates with which machines authenticate each other. */
 object ClusterCommand
-    extends OptionsCommand[ClusterCommandOptions](
+    extends Command[ClusterCommandOptions](
       "cluster",
       "makes certificates for searches and solvers on several machines",
       ParserForClass[ClusterCommandOptions]

@@ -2,7 +2,7 @@ package skein.cli
 
 import java.nio.file.Path
 import mainargs.{ParserForClass, arg}
-import skein.cluster.{Endpoint, Tls}
+import skein.cluster.Tls
 import skein.link.Address
 import skein.search.SearchBlock
 import skein.units.Expect
@@ -34,12 +34,10 @@ final case class ClusterOptions(
       )
     else
       for
-        _ <- Expect.that(workers.forall(count => count >= 1 && count <= MostWorkers)):
-          s"--workers: expected 1 to $MostWorkers, got ${workers.getOrElse(0)}"
-        _ <- Expect.that(block.forall(size => size >= 1 && size <= SearchBlock.MostEpisodes)):
-          s"--block: expected 1 to ${SearchBlock.MostEpisodes}, got ${block.getOrElse(0)}"
+        _      <- Expect.optional(workers)(Expect.within("--workers", _, 1, MostWorkers))
+        _      <- Expect.optional(block)(Expect.within("--block", _, 1, SearchBlock.MostEpisodes))
         listen <- cluster.fold(Right(Loopback))(endpoint("--cluster", _))
-        tls    <- tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
+        tls    <- Expect.optional(tls)(folder => Tls.of(Path.of(folder)))
       yield Some(Checked(workers.getOrElse(0), listen, block, tls))
 
 object ClusterOptions:
@@ -47,7 +45,7 @@ object ClusterOptions:
 
   final case class Checked(
       workers: Int,
-      listen: Endpoint,
+      listen: Address,
       block: Option[Int],
       tls: Option[Tls]
   )
@@ -55,7 +53,7 @@ object ClusterOptions:
   private val MostWorkers = 256
 
   /** Any free port, which only this machine can reach. */
-  val Loopback: Endpoint = Endpoint("127.0.0.1", 0)
+  val Loopback: Address = Address("127.0.0.1", 0)
 
-  def endpoint(option: String, text: String): Either[String, Endpoint] =
-    Address.parse(text).map(address => Endpoint(address.host, address.port)).left.map(s"$option: " + _)
+  def endpoint(option: String, text: String): Either[String, Address] =
+    Address.parse(text).left.map(s"$option: " + _)

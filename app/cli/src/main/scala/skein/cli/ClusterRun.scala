@@ -9,9 +9,11 @@ import java.util.concurrent.atomic.AtomicReference
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.{ExecutionContext, Future}
 import skein.blocks.Ledger
-import skein.cluster.{BuildId, ClusterProgress, CoordinatorNode, Endpoint, WorkerProcesses}
+import skein.cluster.{BuildId, ClusterProgress, CoordinatorNode, WorkerProcesses}
+import skein.link.Address
 import skein.report.TextTable
 import skein.search.{BlockExecutor, BlocksFailed}
+import skein.units.Decimals
 
 /** A coordinator for one question, with the workers that it started. */
 private[cli] final class ClusterRun private (
@@ -100,12 +102,9 @@ private[cli] final class ClusterRun private (
           f"${(accepted - first.accepted) * 1e9 / (nanos - first.atNanos) / now.here.max(1)}%.2f " +
           "blocks/s each"
       )
-    val here = now.here match
-      case 0 => "no worker is here"
-      case 1 => "1 worker"
-      case n => s"$n workers"
+    val here = if now.here == 0 then "no worker is here" else Decimals.counted(now.here, "worker") + rate
     s"${now.done} of ${now.of} blocks; " +
-      s"$here${if now.here == 0 then "" else rate}; ${now.coordinator.workers.size} joined, ${now.died} lost"
+      s"$here; ${now.coordinator.workers.size} joined, ${now.died} lost"
 
   /** Each worker's share of the work, in a line. */
   private def account: String =
@@ -136,7 +135,7 @@ private[cli] object ClusterRun:
   /** The command line of a worker of this machine. With certificates it listens where its own is valid: at
     * the coordinator's host.
     */
-  private[cli] def words(options: ClusterOptions.Checked, at: Endpoint, threads: Int): Seq[String] =
+  private[cli] def words(options: ClusterOptions.Checked, at: Address, threads: Int): Seq[String] =
     Seq("worker", "--join", at.toString, "--attached", "--threads") ++
       Seq((threads / options.workers.max(1)).max(1).toString) ++
       options.tls.toSeq.flatMap(tls =>

@@ -1,37 +1,12 @@
 package skein.cli
 
-import mainargs.{ArgSig, ParserForClass, Result, Util}
+import mainargs.{ArgSig, Leftover, ParserForClass, Result, Util}
 import scala.annotation.unused
 import skein.flight.NotFlown
 import skein.record.{ClockKind, LoopKind}
 import skein.scenario.ScenarioText
 import skein.settings.ScenarioSettings
 import skein.units.Expect
-
-/** A command of `./skein`; each has a file of its own.
-  *
-  * @param name the word after `./skein`
-  * @param summary one line for `./skein --help`
-  */
-trait Command(val name: String, val summary: String):
-
-  /** Runs with the words after the command's name.
-    *
-    * @return the exit status: 0 success; 1 failure, or a request that cannot be fulfilled; 2 unknown options,
-    *   or values of the wrong kind
-    */
-  def run(arguments: Seq[String]): Int
-
-  /** Reads the words after the command's name without running it, for tests.
-    *
-    * @return Left says what is wrong with them
-    */
-  private[cli] def checked(arguments: Seq[String]): Either[String, Unit]
-
-  /** The text that `--help` prints. */
-  def help: String
-
-  private[cli] def options: Seq[CommandOption]
 
 private object Command:
   val Scenario = "--scenario"
@@ -46,12 +21,14 @@ private object OptionValues:
     "clock" -> ClockKind.values.map(_.label).toSeq
   )
 
-/** A command whose options are the fields of a case class.
+/** A command of `./skein`; each has a file of its own.
   *
-  * @tparam A the options; mainargs derives flags from the fields' names and help from their `@arg(doc = …)`
+  * @tparam A the options, fields of a case class; mainargs derives flags from the fields' names and help from
+  *   their `@arg(doc = …)`
+  * @param name the word after `./skein`
+  * @param summary one line for `./skein --help`
   */
-abstract class OptionsCommand[A](name: String, summary: String, parser: ParserForClass[A])
-    extends Command(name, summary):
+abstract class Command[A](val name: String, val summary: String, parser: ParserForClass[A]):
 
   /** Executes the command.
     *
@@ -75,6 +52,11 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** All values of an option, by option name, if the set is known. */
   protected def known: Map[String, Seq[String]] = Map.empty
 
+  /** Runs with the words after the command's name.
+    *
+    * @return the exit status: 0 success; 1 failure, or a request that cannot be fulfilled; 2 unknown options,
+    *   or values of the wrong kind
+    */
   final def run(words: Seq[String]): Int =
     if words.takeWhile(_ != "--").exists(word => word == "--help" || word == "-h") then
       Console.out.println(help(Terminal.width.fold(100)(_.max(40).min(100))))
@@ -92,6 +74,10 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
     Console.err.println(s"skein $name: ${Complaint.text(reason)}")
     1
 
+  /** Reads the words after the command's name without running it, for tests.
+    *
+    * @return Left says what is wrong with them
+    */
   private[cli] final def checked(words: Seq[String]): Either[String, Unit] =
     scenarioRead(words).flatMap(parsed).flatMap(check)
 
@@ -128,6 +114,15 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
       parser.constructRaw(optionsFirst(arguments) ++ words) match
         case failure: Result.Failure => Left(Misuse.text(failure, names))
         case Result.Success(options) => Right(options)
+
+  /** The only word of a command that takes one.
+    *
+    * @param what it is, for people
+    */
+  protected def only(words: Leftover[String], what: String, usage: String): Either[String, String] =
+    words.value match
+      case Seq(one) => Right(one)
+      case others   => Left(s"expected one $what, got ${others.size}: $usage")
 
   private def startsProgram = parser.main.flattenedArgSigs.exists(_._2 == Behind.Reader)
 

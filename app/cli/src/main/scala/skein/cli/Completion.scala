@@ -7,7 +7,7 @@ private[cli] object Completion:
   /** A script for bash that completes the program's commands, each one's options, known values, and otherwise
     * file names.
     */
-  def bash(program: String, commands: Seq[Command]): String =
+  def bash(program: String, commands: Seq[Command[?]]): String =
     val values =
       for
         command <- commands
@@ -40,7 +40,7 @@ private[cli] object Completion:
        |complete -o filenames -F _$program $program""".stripMargin
 
   /** A script for zsh, which completes like the script for bash and shows a description of each option. */
-  def zsh(program: String, commands: Seq[Command]): String =
+  def zsh(program: String, commands: Seq[Command[?]]): String =
     def quoted(text: String)    = text.replace("'", "'\\''")
     def bracketed(text: String) = quoted(text.replace("[", "\\[").replace("]", "\\]"))
     val described               =

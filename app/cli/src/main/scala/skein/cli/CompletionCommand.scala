@@ -6,8 +6,8 @@ import mainargs.{Leftover, ParserForClass, arg}
 final case class CompletionOptions(@arg(doc = "bash or zsh") shell: Leftover[String])
 
 /** @param commands all commands of the program, including this one */
-final class CompletionCommand(commands: => Seq[Command])
-    extends OptionsCommand[CompletionOptions](
+final class CompletionCommand(commands: => Seq[Command[?]])
+    extends Command[CompletionOptions](
       "completion",
       "prints what a shell needs to complete commands and options",
       ParserForClass[CompletionOptions]

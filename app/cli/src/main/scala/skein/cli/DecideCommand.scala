@@ -12,7 +12,7 @@ import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.cluster.BuildId
 import skein.flight.{FlightAssembler, WarmUp}
 import skein.kafka.{KafkaSolver, KafkaTopics}
-import skein.link.{Address, BackgroundThread, ControlThreads, TcpTransport, TransportError}
+import skein.link.{Address, BackgroundThread, ControlThreads, TcpTransport}
 import skein.scenario.{ScenarioText, Scenarios}
 import skein.settings.{PredictionModel, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
@@ -33,7 +33,7 @@ final case class DecideOptions(
 
 /** `./skein decide`: the solver, which decides for flights of other processes. */
 final class DecideCommand(using scenarios: Scenarios)
-    extends OptionsCommand[DecideOptions](
+    extends Command[DecideOptions](
       "decide",
       "decides for flights of other processes: ./skein fly --solver",
       ParserForClass[DecideOptions]
@@ -70,12 +70,10 @@ final class DecideCommand(using scenarios: Scenarios)
   private given ExecutionContext = ExecutionContext.global
 
   private def tcp(address: Address, secured: SolverSecurity.Checked): Serving = desk =>
-    try
-      val transport = TcpTransport(certificates = secured.certificates)
-      val server    = Edge.await(SolverServer.start(address, transport, desk, Clock.system))
-      Console.out.println(s"decides at tcp://${server.address}; Ctrl-C ends it")
-      Right(Served(() => server.close()))
-    catch case error: TransportError => Left(error.getMessage)
+    val transport = TcpTransport(certificates = secured.certificates)
+    val server    = Edge.await(SolverServer.start(address, transport, desk, Clock.system))
+    Console.out.println(s"decides at tcp://${server.address}; Ctrl-C ends it")
+    Right(Served(() => server.close()))
 
   private def kafka(topics: KafkaTopics): Serving = desk =>
     val solver = KafkaSolver(topics, desk, say)
@@ -86,8 +84,7 @@ final class DecideCommand(using scenarios: Scenarios)
     Right(Served(() => solver.close().map(_ => Done), failed))
 
   private def served(options: DecideOptions)(serving: Serving): Either[String, Unit] =
-    given system: ActorSystem = ActorSystem("skein-decide")
-    try
+    Edge.withSystem("skein-decide"): system ?=>
       val warm = ConcurrentHashMap[String, Boolean]()
       val desk = SolverDesk(
         SecureRandom().nextLong(),
@@ -110,7 +107,6 @@ final class DecideCommand(using scenarios: Scenarios)
             s"${stats.refused} flights; ${stats.garbled} messages could not be read"
         )
         end
-    finally Edge.await(system.terminate()): Unit
 
   private def decidersOf(
       briefing: Briefing,

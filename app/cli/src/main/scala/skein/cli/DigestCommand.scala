@@ -13,7 +13,7 @@ final case class DigestOptions(
 
 /** `./skein digest`: prints the SHA-256 of recordings' content. */
 object DigestCommand
-    extends OptionsCommand[DigestOptions](
+    extends Command[DigestOptions](
       "digest",
       "shows the SHA-256 of what recordings contain; equal flights have equal ones",
       ParserForClass[DigestOptions]

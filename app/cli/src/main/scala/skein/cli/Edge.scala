@@ -1,16 +1,31 @@
 package skein.cli
 
+import com.typesafe.config.{Config, ConfigFactory}
 import java.util.concurrent.ConcurrentLinkedDeque
 import java.util.logging.{Handler, Level, LogRecord, Logger}
+import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, Future}
 import scala.jdk.CollectionConverters.*
+import skein.link.TransportError
 import skein.units.OwnFailure
 
 /** Blocks a command's main thread on asynchronous work. */
 private[cli] object Edge:
 
   def await[A](future: Future[A]): A = Await.result(future, Duration.Inf)
+
+  /** Runs `body` with an actor system, which ends afterwards.
+    *
+    * @return Left also says why a transport failed
+    */
+  def withSystem[A](name: String, settings: => Config = ConfigFactory.load())(
+      body: ActorSystem ?=> Either[String, A]
+  ): Either[String, A] =
+    val system = ActorSystem(name, settings)
+    try body(using system)
+    catch case error: TransportError => Left(error.getMessage)
+    finally await(system.terminate()): Unit
 
   @volatile private var interrupted = false
 

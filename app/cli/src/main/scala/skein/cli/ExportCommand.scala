@@ -23,7 +23,7 @@ final case class ExportOptions(
 
 /** `./skein export`: writes a recording as Parquet, as MCAP, or as a bag of ROS 2. */
 object ExportCommand
-    extends OptionsCommand[ExportOptions](
+    extends Command[ExportOptions](
       "export",
       "writes a recording for other programs",
       ParserForClass[ExportOptions]
@@ -32,10 +32,8 @@ object ExportCommand
 
   protected def execute(options: ExportOptions): Either[String, Unit] =
     for
-      file <- options.file.value match
-        case Seq(one) => Right(Path.of(one))
-        case others   => Left(s"expected one recording, got ${others.size}: $usage")
-      _ <- Expect.that(Seq(options.parquet, options.mcap, options.rosbag).exists(_.nonEmpty)):
+      file <- only(options.file, "recording", usage).map(Path.of(_))
+      _    <- Expect.that(Seq(options.parquet, options.mcap, options.rosbag).exists(_.nonEmpty)):
         s"expected what to write, got nothing: $usage"
       _ <- options.parquet.fold(Right(()))(parquet(file, _))
       _ <- options.mcap.fold(Right(()))(mcap(file, _))

@@ -3,7 +3,6 @@ package skein.cli
 import java.nio.file.Path
 import java.util.concurrent.atomic.AtomicInteger
 import mainargs.{Flag, ParserForClass, arg}
-import org.apache.pekko.actor.ActorSystem
 import scala.collection.concurrent.TrieMap
 import scala.util.Try
 import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
@@ -59,7 +58,7 @@ final case class FlyOptions(
 
 /** `./skein fly`: runs loops over links, live or in virtual time, and reports on them. */
 final class FlyCommand(using Scenarios)
-    extends OptionsCommand[FlyOptions](
+    extends Command[FlyOptions](
       "fly",
       "flies a scenario, by default the paper's duel, and writes a report",
       ParserForClass[FlyOptions]
@@ -80,11 +79,9 @@ final class FlyCommand(using Scenarios)
       learning <- options.learning.chosen(settings)
       plans = learning.fold(settings.plans)(settings.plansWith)
       isTcp = options.simulator.exists(_.startsWith(FlyCommand.Tcp))
-      simulator <- options.simulator
-        .map(_.stripPrefix(FlyCommand.Tcp))
-        .fold(Right(None))(Address.parse(_).map(Some(_)))
-        .left.map("--simulator: " + _)
-      _ <- Expect.that(!isTcp || settings.wire == Wire.Mavlink):
+      named = options.simulator.map(_.stripPrefix(FlyCommand.Tcp))
+      simulator <- Expect.optional(named)(Address.parse).left.map("--simulator: " + _)
+      _         <- Expect.that(!isTcp || settings.wire == Wire.Mavlink):
         s"--simulator: ${FlyCommand.Tcp} is for --mavlink alone; AirSim's protocol is always TCP"
       _ <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):
         "--scene is for the built-in simulator; --simulator has a scene of its own"
@@ -193,9 +190,8 @@ final class FlyCommand(using Scenarios)
   private def warmUp(settings: FlySettings, twins: Vector[FlightPlan]): Either[String, Preview.Flown] =
     if settings.loops.forall(FlyCommand.warm) then Right(Map.empty)
     else
-      val (clock, started)      = (Clock.system, Clock.system.now())
-      given system: ActorSystem = ActorSystem("skein-warm-up")
-      try
+      val (clock, started) = (Clock.system, Clock.system.now())
+      Edge.withSystem("skein-warm-up"):
         for
           flights <- WarmUp.fly(settings, WarmUp.Flights, clock)
           isQuick = Preview.fits(flights, clock.now().since(started), settings.duration)
@@ -208,8 +204,6 @@ final class FlyCommand(using Scenarios)
               "over loopback, so that none waits for the compiler"
           )
           ahead
-      finally
-        val _ = Edge.await(system.terminate())
 
   /** Records the virtual twins of the completed live flights, and simulates those that are not in `ahead`. */
   private def flyTwins(
@@ -313,14 +307,9 @@ private[cli] object FlyCommand:
     * simulator is checked when its vehicles move to their starts, which needs their clocks.
     */
   def vehiclesThere(settings: FlySettings, simulator: Option[Address]): Either[String, Unit] =
-    simulator.filter(_ => settings.wire == Wire.AirSim) match
-      case None     => Right(())
-      case Some(at) =>
-        given system: ActorSystem = ActorSystem("skein-names")
-        try
-          Edge.await(AirSimFleet.missing(settings.fleet, settings.sensors, at, TcpTransport(), Clock.system))
-        finally
-          val _ = Edge.await(system.terminate())
+    simulator.filter(_ => settings.wire == Wire.AirSim).fold(Right(())): at =>
+      Edge.withSystem("skein-names"):
+        Edge.await(AirSimFleet.missing(settings.fleet, settings.sensors, at, TcpTransport(), Clock.system))
 
   /** A line for a user who ended the command, with the number of recorded virtual flights: each is recorded
     * when it ends.

@@ -113,7 +113,7 @@ object ForwardOptions:
   /** Number of threads: the number of cores by default. */
   def threadCount(told: Option[Int]): Either[String, Int] =
     val count = told.getOrElse(Runtime.getRuntime.availableProcessors)
-    Either.cond(count >= 1 && count <= 1024, count, s"--threads: expected 1 to 1024, got $count")
+    Expect.within("--threads", count, 1, 1024).map(_ => count)
 
   /** Refuses options that only apply to duels. */
   def ofDuels(others: (String, Option[?])*)(options: ForwardOptions): Either[String, Unit] =

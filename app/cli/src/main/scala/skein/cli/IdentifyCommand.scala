@@ -11,6 +11,7 @@ import skein.record.{Digest, Recording, RecordingReader}
 import skein.report.{Section, TextTable, Typed}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{Fit, ModelFile, SensorFile}
+import skein.units.Decimals.fixed
 import skein.units.{Expect, Interval, Span}
 
 /** Command-line options of `./skein identify`, with their help texts. */
@@ -36,7 +37,7 @@ final case class IdentifyOptions(
 
 /** `./skein identify`: fits models of vehicles and of a sensor to recordings. */
 final class IdentifyCommand(using scenarios: Scenarios)
-    extends OptionsCommand[IdentifyOptions](
+    extends Command[IdentifyOptions](
       "identify",
       "fits models of vehicles, and of what their cameras recognise, to recordings",
       ParserForClass[IdentifyOptions]
@@ -219,29 +220,15 @@ final class IdentifyCommand(using scenarios: Scenarios)
     if fitted.atBound then s"$text (bound)" else text
 
   private def horizons(fits: Vector[Fit], errors: Fit => Vector[HorizonError]): TextTable =
-    val cells = Vector(
-      "<structure",
-      "horizon s",
-      "predictions",
-      "position p50 m",
-      "p95 m",
-      "velocity p50 m/s",
-      "p95 m/s"
+    TextTable.of(fits.flatMap(fit => errors(fit).map((fit.identification.structure.label, _))))(
+      "<structure"       -> (_._1),
+      "horizon s"        -> (_._2.horizonS.fixed(0)),
+      "predictions"      -> (_._2.predictions.toString),
+      "position p50 m"   -> (_._2.positionP50M.fixed(3)),
+      "p95 m"            -> (_._2.positionP95M.fixed(3)),
+      "velocity p50 m/s" -> (_._2.velocityP50Mps.fixed(3)),
+      "p95 m/s"          -> (_._2.velocityP95Mps.fixed(3))
     )
-    val rows =
-      for
-        fit   <- fits
-        error <- errors(fit)
-      yield Vector(
-        fit.identification.structure.label,
-        f"${error.horizonS}%.0f",
-        error.predictions.toString,
-        f"${error.positionP50M}%.3f",
-        f"${error.positionP95M}%.3f",
-        f"${error.velocityP50Mps}%.3f",
-        f"${error.velocityP95Mps}%.3f"
-      )
-    TextTable(cells, rows)
 
   private def write(
       out: Path,

@@ -14,7 +14,7 @@ final case class ImportOptions(
 
 /** `./skein import`: converts an exported MCAP file back to a recording. */
 object ImportCommand
-    extends OptionsCommand[ImportOptions](
+    extends Command[ImportOptions](
       "import",
       "makes a recording from an exported MCAP file, with the same digest",
       ParserForClass[ImportOptions]
@@ -22,11 +22,8 @@ object ImportCommand
 
   protected def execute(options: ImportOptions): Either[String, Unit] =
     for
-      file <- options.file.value match
-        case Seq(one) => Right(Path.of(one))
-        case others   =>
-          Left(s"expected one MCAP file, got ${others.size}: ./skein import FILE --recording FILE")
-      _ <- OutFolder.isThere("--recording", options.recording)
+      file <- only(options.file, "MCAP file", "./skein import FILE --recording FILE").map(Path.of(_))
+      _    <- OutFolder.isThere("--recording", options.recording)
       recording = Path.of(options.recording)
       _      <- McapRecording.read(file, recording).left.map(_.message)
       digest <- Digest.ofFile(recording).left.map(_.message)

@@ -1,7 +1,6 @@
 package skein.cli
 
 import mainargs.{Flag, ParserForClass, arg}
-import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.Sink
 import scala.concurrent.Future
 import scala.util.{Failure, Success, Try}
@@ -35,7 +34,7 @@ final case class LatencyOptions(
 
 /** `./skein latency`: measures round trips to a simulator. */
 object LatencyCommand
-    extends OptionsCommand[LatencyOptions](
+    extends Command[LatencyOptions](
       "latency",
       "measures round trips to a simulator and draws their histogram, the paper's Figure 3",
       ParserForClass[LatencyOptions]
@@ -72,31 +71,30 @@ object LatencyCommand
       period: Span,
       samples: Int
   ): Either[String, Seq[Try[Span]]] =
-    given system: ActorSystem = ActorSystem("skein")
-    import system.dispatcher
-    val transport           = TcpTransport()
-    def client(at: Address) = AirSimClient(RpcClient(transport, at, Clock.system))
-    def pings(at: Address)  =
-      val pinged = client(at)
-      def ping() = pinged.ping().map(_.fold(error => throw NoAnswer(error.message), identity))
-      def measured(every: Span, count: Int) =
-        LatencyProbe.roundTrips(() => ping(), every, count, Clock.system).runWith(Sink.seq)
-      for
-        // Connects, and lets the just-in-time compiler do its work: these do not count.
-        _ <- measured(Span.ofMillis(5), count = 200)
-        _ = Console.err.println(f"$samples pings, one each ${period.toMillis}%.0f ms")
-        answers <- measured(period, samples)
-      yield Right(answers)
-    val first   = AirSimClient(RpcClient(transport, simulator, Clock.system), AirSimError.FirstWithin)
-    val answers = first.ping().flatMap:
-      case Left(error) => Future.successful(Left(AirSimError.ofFirst(error, simulator)))
-      case Right(_) if link.profile == LinkProfile.none => pings(simulator)
-      case Right(_)                                     =>
-        LinkProxy.start(Address("127.0.0.1", 0), simulator, link, transport).flatMap(proxy =>
-          pings(proxy.address)
-        )
-    try Edge.await(answers)
-    finally Edge.await(system.terminate()): Unit
+    Edge.withSystem("skein"): system ?=>
+      import system.dispatcher
+      val transport           = TcpTransport()
+      def client(at: Address) = AirSimClient(RpcClient(transport, at, Clock.system))
+      def pings(at: Address)  =
+        val pinged = client(at)
+        def ping() = pinged.ping().map(_.fold(error => throw NoAnswer(error.message), identity))
+        def measured(every: Span, count: Int) =
+          LatencyProbe.roundTrips(() => ping(), every, count, Clock.system).runWith(Sink.seq)
+        for
+          // Connects, and lets the just-in-time compiler do its work: these do not count.
+          _ <- measured(Span.ofMillis(5), count = 200)
+          _ = Console.err.println(f"$samples pings, one each ${period.toMillis}%.0f ms")
+          answers <- measured(period, samples)
+        yield Right(answers)
+      val first   = AirSimClient(RpcClient(transport, simulator, Clock.system), AirSimError.FirstWithin)
+      val answers = first.ping().flatMap:
+        case Left(error) => Future.successful(Left(AirSimError.ofFirst(error, simulator)))
+        case Right(_) if link.profile == LinkProfile.none => pings(simulator)
+        case Right(_)                                     =>
+          LinkProxy.start(Address("127.0.0.1", 0), simulator, link, transport).flatMap(proxy =>
+            pings(proxy.address)
+          )
+      Edge.await(answers)
 
   private final class NoAnswer(reason: String) extends RuntimeException(reason)
 

@@ -83,7 +83,7 @@ final case class LearnOptions(
 /** @param program the class whose `main` starts the commands
   */
 final class LearnCommand(program: String)(using Scenarios)
-    extends OptionsCommand[LearnOptions](
+    extends Command[LearnOptions](
       "learn",
       "trains a neural policy by SAC, DDPG or PPO in forward simulation under a loop's real timing",
       ParserForClass[LearnOptions]
@@ -98,39 +98,37 @@ final class LearnCommand(program: String)(using Scenarios)
     val flights = options.flights.getOrElse(20)
     for
       threads <- options.forward.threadCount
-      _       <- Expect.that(flights >= 0 && flights <= 10_000):
-        s"--flights: expected 0 to 10000, got $flights"
+      _       <- Expect.within("--flights", flights, 0, 10_000)
       cluster <- options.cluster.checked
       begun   <- options.resume.fold(begin(options))(resume(options, _))
-      (folder, question, state) = begun
-      setup <- question.setup
-      _     <- OutFolder.alone(folder):
+      (folder, setup, state) = begun
+      _ <- OutFolder.alone(folder):
         val shown = Shown(options.json.value)
         measuring(setup, cluster, folder, threads, shown): measure =>
           run(setup, folder, state, threads, flights, measure, shown)
     yield ()
 
-  private type Begun = (Path, LearnQuestion, LearnState)
+  private type Begun = (Path, LearnSetup, LearnState)
 
   private def resume(options: LearnOptions, folder: String): Either[String, Begun] =
     val may = Arguments.told(options.cluster) ++ Set("--threads", "--flights", "--json")
     for
-      _    <- Arguments.resumed(options, may, "--threads, --flights and who judges")
-      file <- LearnFile.read(Path.of(folder)).left.map("--resume: " + _)
-      _    <- NamedFiles.unchanged(file.files, "learning")
-      was  <- file.question.setup
-      _    <- VerifiedQuestion.unchanged(file.probe, was.probe, "learning")
-    yield (Path.of(folder), file.question, file.state)
+      _     <- Arguments.resumed(options, may, "--threads, --flights and who judges")
+      file  <- LearnFile.read(Path.of(folder)).left.map("--resume: " + _)
+      _     <- NamedFiles.unchanged(file.files, "learning")
+      setup <- file.question.setup
+      _     <- VerifiedQuestion.unchanged(file.probe, setup.probe, "learning")
+    yield (Path.of(folder), setup, file.state)
 
   private def begin(options: LearnOptions): Either[String, Begun] =
     val folder = Path.of(options.out.getOrElse(OutFolder.dated("learned")))
     for
-      question <- LearnCommand.question(options)
-      _        <- question.setup.flatMap(_.task)
-      _        <- Expect.that(!Files.exists(folder.resolve(LearnFile.Name))):
+      setup <- LearnCommand.question(options).flatMap(_.setup)
+      _     <- setup.task
+      _     <- Expect.that(!Files.exists(folder.resolve(LearnFile.Name))):
         s"--out: $folder holds what was learned already; --resume ${Typed.path(folder)} goes on with it"
       _ <- OutFolder.made("--out", folder.toString)
-    yield (folder, question, LearnState())
+    yield (folder, setup, LearnState())
 
   private def run(
       setup: LearnSetup,

@@ -30,7 +30,7 @@ private[cli] object LearnWork:
       posed <- JsonText.read[ProbedQuestion](asked, "learning's question")
       setup <- posed.question.setup
       came = setup.probe
-      _ <- Expect.that(came == posed.probe):
+      _ <- Expect.that(RunningStats.areSame(came, posed.probe)):
         s"the baseline comes to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
           "has a file that --link or --plant names another content here?"
     yield () =>

@@ -2,7 +2,6 @@ package skein.cli
 
 import java.util.concurrent.CountDownLatch
 import mainargs.{Flag, ParserForClass, arg}
-import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.BidiFlow
 import skein.buffer.{BufferCounts, SimulatorBuffer}
 import skein.link.*
@@ -57,7 +56,7 @@ final case class LinkOptions(
 
 /** `./skein link`: an emulated network between a client and a server. */
 object LinkCommand
-    extends OptionsCommand[LinkOptions](
+    extends Command[LinkOptions](
       "link",
       "puts an emulated network between any client and any server, unless they speak HTTP or TLS",
       ParserForClass[LinkOptions]
@@ -105,17 +104,15 @@ object LinkCommand
   ): Either[String, LatencyProfile] =
     val (told, profile) = own.fold(("--profile", options.profile.getOrElse("direct")))((flag, _))
     for
-      _       <- options.rate.fold[Either[String, Any]](Right(()))(Bandwidth.parse).left.map("--rate: " + _)
+      _       <- Expect.optional(options.rate)(Bandwidth.parse).left.map("--rate: " + _)
       limited <- Arguments
         .latency(options.rate.fold("")(rate => s"rate:$rate,") + profile)
         .left
         .map(s"$told: " + _)
     yield limited
 
-  private def every(text: Option[String]): Either[String, Option[Span]] = text match
-    case None       => Right(None)
-    case Some(text) =>
-      Span.parse(text).filterOrElse(_ > Span.Zero, s"expected more than 0, got '$text'").map(Some(_))
+  private def every(text: Option[String]): Either[String, Option[Span]] = Expect.optional(text): text =>
+    Span.parse(text).filterOrElse(_ > Span.Zero, s"expected more than 0, got '$text'")
 
   private def serve(
       listenAt: Address,
@@ -123,9 +120,8 @@ object LinkCommand
       profile: LinkProfile,
       options: LinkOptions
   ): Either[String, Unit] =
-    given system: ActorSystem   = ActorSystem("skein")
     def warn(reason: Throwable) = Console.err.println(s"skein link: ${reason.getMessage}")
-    try
+    Edge.withSystem("skein"):
       val link      = EmulatedLink(profile, options.seed, Clock.system)
       val isUdp     = options.udp.value
       val transport = if isUdp then UdpTransport() else TcpTransport()
@@ -152,8 +148,6 @@ object LinkCommand
         Console.out.println(summary(proxy.counts, isUdp))
         buffer.foreach(beside => Console.out.println(summary(beside.counts)))
       Right(())
-    catch case error: TransportError => Left(error.getMessage)
-    finally Edge.await(system.terminate()): Unit
 
   /** Time within which the command ends, even if bytes are still on the link. */
   private val GraceMillis = 2_000L

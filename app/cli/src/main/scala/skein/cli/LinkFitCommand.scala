@@ -21,7 +21,7 @@ final case class LinkFitOptions(
 
 /** `./skein link-fit`: fits a link's profile to measured round trips. */
 object LinkFitCommand
-    extends OptionsCommand[LinkFitOptions](
+    extends Command[LinkFitOptions](
       "link-fit",
       "fits a link's profile to a recording, to ping's output or to a table, for --link",
       ParserForClass[LinkFitOptions]
@@ -32,9 +32,7 @@ object LinkFitCommand
 
   protected def execute(options: LinkFitOptions): Either[String, Unit] =
     for
-      file <- options.file.value match
-        case Seq(one) => Right(one)
-        case others   => Left(s"expected one file, got ${others.size}: ./skein link-fit FILE")
+      file   <- only(options.file, "file", "./skein link-fit FILE")
       traces <- read(file)
       trips = traces.flatMap(_.answered)
       fit   = LinkFit.of(traces)

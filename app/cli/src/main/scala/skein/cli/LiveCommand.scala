@@ -42,23 +42,21 @@ private[cli] final class LiveCommand(
 
   /** Runs all flights; blocks until the last has ended. */
   def fly(plans: Vector[FlightPlan]): Either[String, Flown] =
-    given system: ActorSystem = ActorSystem("skein")
-    val assembler             = FlightAssembler(
-      TcpTransport(),
-      Clock.system,
-      settings,
-      simulator,
-      tell = tell,
-      calledOff = requests.calledOff,
-      solvers = SolverOptions.reached(settings, secured),
-      isWatched = shown.isDefined,
-      isMavlinkByTcp = isMavlinkByTcp,
-      elsewhere = ros.map(RosSource(_, Clock.system))
-    )
-    val isOwn = simulator.isEmpty && ros.isEmpty
-    try if isOwn then together(assembler, plans).map(Flown(_, None)) else inTurn(assembler, plans)
-    finally
-      val _ = Edge.await(system.terminate())
+    Edge.withSystem("skein"):
+      val assembler = FlightAssembler(
+        TcpTransport(),
+        Clock.system,
+        settings,
+        simulator,
+        tell = tell,
+        calledOff = requests.calledOff,
+        solvers = SolverOptions.reached(settings, secured),
+        isWatched = shown.isDefined,
+        isMavlinkByTcp = isMavlinkByTcp,
+        elsewhere = ros.map(RosSource(_, Clock.system))
+      )
+      val isOwn = simulator.isEmpty && ros.isEmpty
+      if isOwn then together(assembler, plans).map(Flown(_, None)) else inTurn(assembler, plans)
 
   /** Runs flights one after another on a running simulator. Completed flights are kept when a later one
     * cannot start; Ctrl-C ends them all.
@@ -138,5 +136,4 @@ private[cli] object LiveCommand:
 
   /** Prints an in-flight problem above the progress line. */
   private def tell(line: String): Unit =
-    val isTerminal = System.console() != null && System.console().isTerminal
-    Console.err.println((if isTerminal then "\r\u001b[K" else "") + line)
+    Console.err.println((if Terminal.isThere then "\r\u001b[K" else "") + line)

@@ -30,10 +30,8 @@ private[cli] final class LoopOnShow(
 
   /** @param what the observed program, for people; `where`: its address */
   def show(shows: Shows, what: String, where: String): Unit =
-    val now    = clock.now()
-    val flight =
-      FlightRow(Id, "none", "none", 0, Every, Span.Zero, "real", Simulator.Other(where), what, "", now)
-    shows.add(LiveShow(RecordingHeader(flight, Nil), feed, Vector(Gauge(topic, Every, () => json()))))
+    val heading = RecordingHeader(flight(Id, Every, where, what, clock.now()), Nil)
+    shows.add(LiveShow(heading, feed, Vector(Gauge(topic, Every, () => json()))))
 
   /** The page keeps what it shows from now on. */
   def end(): Unit =
@@ -68,6 +66,13 @@ private[cli] object LoopOnShow:
   private val Every     = Span.ofMillis(100)
   private val FindEvery = Span.ofSeconds(1)
   private val Rest      = 20
+
+  /** The heading of what is shown although it is no flight of a loop.
+    *
+    * @param what it is, for people; `where`: its address
+    */
+  def flight(id: String, every: Span, where: String, what: String, now: Instant): FlightRow =
+    FlightRow(id, "none", "none", 0, every, Span.Zero, "real", Simulator.Other(where), what, "", now)
 
   private val number  = """{"type":"number"}"""
   private val text    = """{"type":"string"}"""

@@ -2,10 +2,8 @@ package skein.cli
 
 import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
-import org.apache.pekko.actor.ActorSystem
 import skein.airsim.{Vehicles, WorldSettings}
 import skein.budget.Tolerance
-import skein.link.TransportError
 import skein.margin.*
 import skein.report.{Paragraph, Section}
 import skein.scenario.{Scenario, Scenarios}
@@ -71,7 +69,7 @@ final case class MarginOptions(
 
 /** `./skein margin`: measures the delay margin of any program that flies vehicles by AirSim's interface. */
 final class MarginCommand(using scenarios: Scenarios)
-    extends OptionsCommand[MarginOptions](
+    extends Command[MarginOptions](
       "margin",
       "says how much latency any AirSim program tolerates, by running it over one link after the other",
       ParserForClass[MarginOptions]
@@ -81,13 +79,8 @@ final class MarginCommand(using scenarios: Scenarios)
   override protected def check(options: MarginOptions): Either[String, Unit] = asked(options).map(_ => ())
 
   private final case class Asked(
-      command: Seq[String],
-      scenario: Option[Scenario],
-      world: WorldSettings,
-      scene: NamedScene,
-      judge: MarginJudge,
+      task: MarginTask,
       links: Vector[LatencyProfile],
-      skip: Span,
       tolerance: Tolerance,
       atOnce: Int
   )
@@ -102,28 +95,20 @@ final class MarginCommand(using scenarios: Scenarios)
         .map("--scene: " + _)
       judge <- MarginJudge.read(options.judge, scenario, world.vehicles.size).left.map("--judge: " + _)
       links <- linksOf(options)
-      _     <- within("--repeats", options.repeats, 1, 100)
-      _     <- within("--seconds", options.seconds, 1, 3600)
+      _     <- Expect.within("--repeats", options.repeats, 1, 100)
+      _     <- Expect.within("--seconds", options.seconds, 1, 3600)
       skip  <- Span.parse(options.skip).left.map("--skip: " + _)
       _     <- Expect.that(skip.toSeconds < options.seconds)(
         s"--skip: expected less than the ${options.seconds} s of --seconds, got '${options.skip}'"
       )
       tolerance <- Tolerance.read(options.tolerance, options.within)
-      _         <- within("--at-once", options.atOnce.getOrElse(1), 1, 64)
+      _         <- Expect.within("--at-once", options.atOnce.getOrElse(1), 1, 64)
     yield Asked(
-      command,
-      scenario,
-      world,
-      scene,
-      judge,
+      MarginTask(command, world, scene.scene, scenario, judge, Span.ofSeconds(options.seconds), skip),
       links,
-      skip,
       tolerance,
       options.atOnce.getOrElse((Runtime.getRuntime.availableProcessors / 2).max(1))
     )
-
-  private def within(option: String, value: Int, least: Int, most: Int) =
-    Expect.that(value >= least && value <= most)(s"$option: expected $least to $most, got $value")
 
   private def scenarioOf(options: MarginOptions): Either[String, Option[Scenario]] = options.scenario match
     case None =>
@@ -170,30 +155,20 @@ final class MarginCommand(using scenarios: Scenarios)
     yield ()
 
   private def fly(asked: Asked, options: MarginOptions, folder: Path): Either[String, Unit] =
-    given system: ActorSystem = ActorSystem("skein")
-    val shown                 = Shown(options.json.value)
-    val count                 = (asked.links.size + 1) * options.repeats
-    val most                  = count.toLong * options.seconds / asked.atOnce
-    shown.say(
-      s"$count runs of up to ${options.seconds} s, ${MarginTables.atOnce(asked.atOnce)}: " +
-        s"up to ${(most / 60.0).brief} min"
-    )
-    val trial = MarginTrial(
-      asked.command,
-      asked.world,
-      asked.scene.scene,
-      asked.scenario,
-      asked.judge,
-      Span.ofSeconds(options.seconds),
-      asked.skip,
-      Clock.system
-    )
-    try
+    Edge.withSystem("skein"):
+      val shown = Shown(options.json.value)
+      val count = (asked.links.size + 1) * options.repeats
+      val most  = count.toLong * options.seconds / asked.atOnce
+      shown.say(
+        s"$count runs of up to ${options.seconds} s, ${MarginTables.atOnce(asked.atOnce)}: " +
+          s"up to ${(most / 60.0).brief} min"
+      )
+      val trial = MarginTrial(asked.task, Clock.system)
       trial.warmUp()
       @volatile var stopped = false
       val runs              = MarginRuns(
         trial.run(_, _, () => stopped),
-        asked.judge,
+        asked.task.judge,
         options.repeats,
         asked.atOnce,
         options.seed,
@@ -204,8 +179,8 @@ final class MarginCommand(using scenarios: Scenarios)
         flown <- Edge.untilInterrupted(() => stopped = true)(runs.fly(LatencyProfile.none +: asked.links))
         _     <- OutFolder.write(folder, Vector(OutFolder.text("programs.txt", printed(flown))))
         curve <-
-          MarginCurve.of(asked.judge, asked.tolerance, flown.points.head, flown.points.tail)
-        sections  = MarginTables.of(curve, asked.scenario.exists(_.limits.nonEmpty))
+          MarginCurve.of(asked.task.judge, asked.tolerance, flown.points.head, flown.points.tail)
+        sections  = MarginTables.of(curve, asked.task.scenario.exists(_.limits.nonEmpty))
         sentences = curve.sentence.capitalize +: MarginTables.remarks(curve, asked.atOnce)
         _         = shown.tables(
           sections,
@@ -219,8 +194,6 @@ final class MarginCommand(using scenarios: Scenarios)
         _ = shown.say(s"written: ${files.mkString(", ")}")
         _ <- Expect.that(!stopped)("stopped before all runs had ended; what was flown is printed")
       yield ()
-    catch case error: TransportError => Left(error.getMessage)
-    finally Edge.await(system.terminate()): Unit
 
   private def printed(flown: MarginRuns.Flown): String =
     flown.printed.map((link, run, text) => s"== $link, run $run\n$text\n").mkString

@@ -21,28 +21,27 @@ final case class NewOptions(
 
 /** `./skein new`: writes a project with a scenario, a test and all commands. */
 object NewCommand
-    extends OptionsCommand[NewOptions](
+    extends Command[NewOptions](
       "new",
       "writes a project for a scenario of your own: build, policy, test, all commands",
       ParserForClass[NewOptions]
     ):
 
-  protected def execute(options: NewOptions): Either[String, Unit] = options.name.value match
-    case Seq(name) =>
-      for
-        _ <- Expect.that(name.matches("[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*")):
-          s"expected words of small letters and digits, joined by dashes, each begun by a letter, got '$name'"
-        _ <- taken(name).toLeft(())
-        folder = Path.of(options.out.getOrElse(name))
-        _ <-
-          Expect.that(!Files.exists(folder))(s"expected a folder that is not there yet, got '$folder'")
-        _ <- OutFolder.made("--out", folder.toString)
-        _ <- write(folder, name)
-      yield
-        Console.out.println(s"written: $folder")
-        Console.out.println(s"fly it: cd ${Typed.path(folder)} && ./skein fly --clock virtual")
-        Console.out.println("It builds from what ./sbtw installLocal has put on this machine.")
-    case words => Left(s"expected one name, got ${words.size}: ./skein new NAME")
+  protected def execute(options: NewOptions): Either[String, Unit] =
+    for
+      name <- only(options.name, "name", "./skein new NAME")
+      _    <- Expect.that(name.matches("[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*")):
+        s"expected words of small letters and digits, joined by dashes, each begun by a letter, got '$name'"
+      _ <- taken(name).toLeft(())
+      folder = Path.of(options.out.getOrElse(name))
+      _ <-
+        Expect.that(!Files.exists(folder))(s"expected a folder that is not there yet, got '$folder'")
+      _ <- OutFolder.made("--out", folder.toString)
+      _ <- write(folder, name)
+    yield
+      Console.out.println(s"written: $folder")
+      Console.out.println(s"fly it: cd ${Typed.path(folder)} && ./skein fly --clock virtual")
+      Console.out.println("It builds from what ./sbtw installLocal has put on this machine.")
 
   private def className(name: String)   = name.split('-').map(_.capitalize).mkString
   private def packageName(name: String) = name.replace("-", "")

@@ -3,7 +3,6 @@ package skein.cli
 import java.nio.file.Path
 import java.util.concurrent.{CountDownLatch, Executors, TimeUnit}
 import mainargs.ParserForClass
-import org.apache.pekko.actor.ActorSystem
 import skein.figures.ObservedFigure
 import skein.link.*
 import skein.observe.*
@@ -17,7 +16,7 @@ import skein.view.Shows
   * MAVLink, from between it and the simulator, or of any graph of ROS 2, by its topics or a bag.
   */
 object ObserveCommand
-    extends OptionsCommand[ObserveOptions](
+    extends Command[ObserveOptions](
       "observe",
       "measures the loop of any AirSim or MAVLink program, or of a graph or bag of ROS 2: how old its data is",
       ParserForClass[ObserveOptions]
@@ -97,7 +96,7 @@ object ObserveCommand
     folder.fold(Right(()))(write(data, observed.log, observed.vehicles, _, shown))
 
   private def folderOf(options: ObserveOptions): Either[String, Option[Path]] =
-    options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+    Expect.optional(options.out)(OutFolder.made("--out", _))
 
   private def observeProgram(options: ObserveOptions): Either[String, Unit] =
     val isMavlink = options.mavlink.value
@@ -192,41 +191,44 @@ object ObserveCommand
       options: ObserveOptions
   )(findings: A => Vector[String]): Either[String, (A, Either[String, Unit])] =
     import wire.*
-    given system: ActorSystem   = ActorSystem("skein", ObservingProxy.Settings)
     val reader                  = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
     val shown                   = Shown(options.json.value)
     def warn(reason: Throwable) = Console.err.println(s"skein observe: ${reason.getMessage}")
-    try
-      val link  = EmulatedLink(profile, options.seed, Clock.system)
-      val proxy = Edge.await(
-        ObservingProxy.start(
-          analysis,
-          listenAt,
-          simulator,
-          link,
-          if isTcp then TcpTransport() else UdpTransport(),
-          Clock.system,
-          reader,
-          unreachable = warn,
-          isDatagrams = !isTcp
+    Edge.withSystem("skein", ObservingProxy.Settings):
+      try
+        val link  = EmulatedLink(profile, options.seed, Clock.system)
+        val proxy = Edge.await(
+          ObservingProxy.start(
+            analysis,
+            listenAt,
+            simulator,
+            link,
+            if isTcp then TcpTransport() else UdpTransport(),
+            Clock.system,
+            reader,
+            unreachable = warn,
+            isDatagrams = !isTcp
+          )
         )
-      )
-      val command = options.command.words
-      shown.say(
-        s"${proxy.address} leads to $simulator" +
-          (if profile == LinkProfile.none then "" else s" over ${profile.toServer.name}") +
-          (if command.isEmpty then "; connect your program there, Ctrl-C ends it" else "")
-      )
-      val ended =
-        viewing(shows, "a program's loop", simulator.toString, proxy.takeNew, () => findings(proxy.observed)):
-          telling(proxy.progress)(untilEnd(options))
-      if command.nonEmpty then Edge.await(proxy.ended()): Unit
-      Edge.await(proxy.close())
-      Right((proxy.observed, ended))
-    catch case error: TransportError => Left(error.getMessage)
-    finally
-      reader.shutdown()
-      Edge.await(system.terminate()): Unit
+        val command = options.command.words
+        shown.say(
+          s"${proxy.address} leads to $simulator" +
+            (if profile == LinkProfile.none then "" else s" over ${profile.toServer.name}") +
+            (if command.isEmpty then "; connect your program there, Ctrl-C ends it" else "")
+        )
+        val ended =
+          viewing(
+            shows,
+            "a program's loop",
+            simulator.toString,
+            proxy.takeNew,
+            () => findings(proxy.observed)
+          ):
+            telling(proxy.progress)(untilEnd(options))
+        if command.nonEmpty then Edge.await(proxy.ended()): Unit
+        Edge.await(proxy.close())
+        Right((proxy.observed, ended))
+      finally reader.shutdown()
 
   /** Prints the progress every few seconds until `body` ends. */
   private def telling[A](progress: => Progress)(body: => A): A =

@@ -21,7 +21,7 @@ final case class PolicyOptions(
 
 /** `./skein policy`: shows a policy file's content, and converts it to or from ONNX. */
 final class PolicyCommand(using Scenarios)
-    extends OptionsCommand[PolicyOptions](
+    extends Command[PolicyOptions](
       "policy",
       "shows what a policy file contains, and converts networks to ONNX and back",
       ParserForClass[PolicyOptions]
@@ -29,10 +29,7 @@ final class PolicyCommand(using Scenarios)
 
   protected def execute(options: PolicyOptions): Either[String, Unit] =
     for
-      file <- options.file.value match
-        case Seq(one) => Right(one)
-        case others   =>
-          Left(s"expected one policy file, got ${others.size}: ./skein policy FILE --onnx OUT.onnx")
+      file   <- only(options.file, "policy file", "./skein policy FILE --onnx OUT.onnx")
       policy <- PolicyFile.read(file)
       role  = PolicyFile.name(policy.role)
       shown = Shown(options.json.value)

@@ -8,7 +8,7 @@ import java.io.PrintStream
   * @param from part that was done before this run
   */
 private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long = 0):
-  private val isTerminal = System.console() != null && System.console().isTerminal
+  private val isTerminal = Terminal.isThere
   private val startedAt  = System.nanoTime()
   private val every      = if isTerminal then 200_000_000L else 5_000_000_000L
   private var shownAt    = startedAt

@@ -18,7 +18,7 @@ final case class ReplayOptions(
 
 /** `./skein replay`: recomputes the decisions of a recording and compares them, or plays it with `--view`. */
 final class ReplayCommand(using Scenarios)
-    extends OptionsCommand[ReplayOptions](
+    extends Command[ReplayOptions](
       "replay",
       "repeats the decisions of a recording and compares them; with --view, plays it",
       ParserForClass[ReplayOptions]

@@ -17,7 +17,7 @@ final case class ReportOptions(
 
 /** `./skein report`: makes tables and figures from recordings only. */
 final class ReportCommand(using Scenarios)
-    extends OptionsCommand[ReportOptions](
+    extends Command[ReportOptions](
       "report",
       "rebuilds tables and pictures from recordings alone",
       ParserForClass[ReportOptions]

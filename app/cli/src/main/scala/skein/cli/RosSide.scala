@@ -33,14 +33,14 @@ private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTo
     )
     val lines = (node.notes ++ topics.notes).filterNot(said)
     val count = Option.when(now != counts):
-      Seq(
+      ServerNews.happened(
         now.skipped -> "moments not published, the machine is too slow",
         now.images  -> "images or scans not published",
         now.refused -> "messages refused",
         now.failed  -> "messages not sent",
         now.missed  -> "stops of the clock without a command",
         now.late    -> "commands left out, received after a later one"
-      ).collect { case (count, what) if count > 0 => s"$count $what" }.mkString(", ")
+      ).mkString(", ")
     said ++= lines
     counts = now
     (lines ++ count).map("ROS 2: " + _)

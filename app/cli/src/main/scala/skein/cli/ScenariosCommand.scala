@@ -16,7 +16,7 @@ final case class ScenariosOptions(
 
 /** `./skein scenarios`: lists the program's scenarios, or those of files, with their settings. */
 final class ScenariosCommand(using scenarios: Scenarios)
-    extends OptionsCommand[ScenariosOptions](
+    extends Command[ScenariosOptions](
       "scenarios",
       "lists the scenarios that can be flown, with their settings",
       ParserForClass[ScenariosOptions]

@@ -68,7 +68,7 @@ final case class SearchOptions(
 /** @param program the class whose `main` starts the commands
   */
 final class SearchCommand(program: String)(using scenarios: Scenarios)
-    extends OptionsCommand[SearchOptions](
+    extends Command[SearchOptions](
       "search",
       "finds the best of many policies by forward simulation under a loop's real timing",
       ParserForClass[SearchOptions]
@@ -90,43 +90,44 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         CudaGpu.find().map(gpu => Some(GpuAccelerator(gpu))).left.map("--gpu: " + _)
       else Right(None)
       begun <- options.resume.fold(begin(options))(resume(options, _))
-      (folder, question, stored) = begun
-      ready <- question.setup.map(_.acceleratedBy(accelerator))
-      _     <- Expect.that(accelerator.isEmpty || ready.fliesForward):
+      (folder, asked, stored) = begun
+      ready                   = asked.acceleratedBy(accelerator)
+      _ <- Expect.that(accelerator.isEmpty || ready.fliesForward):
         "--gpu: expected what forward simulation flies; these are flights in virtual time"
       _ <- OutFolder.alone(folder):
         EpisodeRunner.using(cluster, program, ready, folder, threads, shown): runner =>
           SearchJob(ready, folder, threads, runner, shown).run(stored)
     yield ()
 
-  private type Begun = (Path, PosedSearch, Option[SearchFile])
+  private type Begun = (Path, ReadySearch, Option[SearchFile])
 
   private def resume(options: SearchOptions, folder: String): Either[String, Begun] =
     val may = Arguments.told(options.cluster) ++ Set("--threads", "--gpu", "--json")
     for
-      _    <- Arguments.resumed(options, may, "--threads and who computes")
-      file <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)
-      _    <- NamedFiles.unchanged(file.files, "the search")
-    yield (Path.of(folder), file.question, Some(file))
+      _     <- Arguments.resumed(options, may, "--threads and who computes")
+      file  <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)
+      _     <- NamedFiles.unchanged(file.files, "the search")
+      ready <- file.question.setup
+    yield (Path.of(folder), ready, Some(file))
 
   private def begin(options: SearchOptions): Either[String, Begun] =
     val folder = Path.of(options.out.getOrElse(OutFolder.dated("searches")))
     for
-      question <- question(options)
-      _        <- Expect.that(!Files.exists(folder.resolve(SearchFile.Name))):
+      ready <- question(options)
+      _     <- Expect.that(!Files.exists(folder.resolve(SearchFile.Name))):
         s"--out: $folder holds a search already; --resume ${Typed.path(folder)} goes on with it"
       _ <- OutFolder.made("--out", folder.toString)
-    yield (folder, question, None)
+    yield (folder, ready, None)
 
-  private def question(options: SearchOptions): Either[String, PosedSearch] =
+  private def question(options: SearchOptions): Either[String, ReadySearch] =
     for
       _ <- Expect.that(options.population.isEmpty || options.method.forall(SearchQuestion.WithPopulation)):
         s"--population: expected with ${SearchQuestion.WithPopulation.mkString(" or ")}, " +
           s"got ${options.method.mkString}"
-      question <- options.scenario.orElse(scenarios.firstWithoutGame).fold(duel(options))(team(options, _))
-    yield question
+      ready <- options.scenario.orElse(scenarios.firstWithoutGame).fold(duel(options))(team(options, _))
+    yield ready
 
-  private def team(options: SearchOptions, scenario: String): Either[String, TeamQuestion] =
+  private def team(options: SearchOptions, scenario: String): Either[String, ReadySearch] =
     import options.forward
     for
       _         <- ForwardOptions.ofDuels("--family" -> options.family, "--role" -> options.role)(forward)
@@ -152,10 +153,9 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         forward.seed.getOrElse(1),
         options.fresh.getOrElse(Effort.TeamsFresh)
       )
-      ready <- question.read(forward.plant.isDefined)
-      asked = if ready.isVirtual then inFlights(question, options) else question
-      _ <- asked.setup
-    yield asked
+      read  <- question.read(forward.plant.isDefined)
+      ready <- (if read.isVirtual then inFlights(question, options) else question).setup
+    yield ready
 
   /** Sets smaller defaults for an engine that evaluates only some candidates per second. */
   private def inFlights(question: TeamQuestion, options: SearchOptions): TeamQuestion =
@@ -167,7 +167,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       fresh = options.fresh.getOrElse(Effort.OfFlights.freshEpisodes)
     )
 
-  private def duel(options: SearchOptions): Either[String, SearchQuestion] =
+  private def duel(options: SearchOptions): Either[String, ReadySearch] =
     import options.forward
     for
       _ <- Expect.that(options.set.isEmpty && options.vary.isEmpty):
@@ -194,5 +194,5 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         forward.seed.getOrElse(1),
         options.fresh
       )
-      _ <- question.setup
-    yield question
+      ready <- question.setup
+    yield ready

@@ -1,12 +1,11 @@
 package skein.cli
 
 import mainargs.{Flag, ParserForClass, arg}
-import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{ExecutionContext, Promise}
 import skein.airsim.WorldSettings
 import skein.hil.AutopilotKind
-import skein.link.{Address, ControlThreads, TcpTransport, TransportError}
+import skein.link.{Address, ControlThreads, TcpTransport}
 import skein.settings.{NamedScene, SimulatedBody, TextFile}
 import skein.report.TextTable
 import skein.simulator.{
@@ -85,7 +84,7 @@ final case class ServeOptions(
 
 /** `./skein serve`: runs the built-in simulator until Ctrl-C. */
 object ServeCommand
-    extends OptionsCommand[ServeOptions](
+    extends Command[ServeOptions](
       "serve",
       "runs the built-in simulator, which speaks AirSim's protocol",
       ParserForClass[ServeOptions]
@@ -105,18 +104,17 @@ object ServeCommand
       scene     <- NamedScene.read(options.scene).left.map("--scene: " + _)
       plant     <- SimulatedBody.parse(options.plant).left.map("--plant: " + _)
       kind      <- plant.kind(options.seed)
-      autopilot <-
-        options.hil.map(autopilotOf).fold[Either[String, Option[AutopilotKind]]](Right(None))(_.map(Some(_)))
-      _ <- Expect.that(autopilot.isEmpty || !options.mavlink.value):
+      autopilot <- Expect.optional(options.hil)(autopilotOf)
+      _         <- Expect.that(autopilot.isEmpty || !options.mavlink.value):
         "--hil: not together with --mavlink, which is an autopilot itself"
       noise <-
-        options.sensors.fold(Right(None))(SensorNoise.parse(_).map(Some(_))).left.map("--sensors: " + _)
+        Expect.optional(options.sensors)(SensorNoise.parse).left.map("--sensors: " + _)
       _ <- Expect.that(noise.isEmpty || autopilot.isEmpty):
         "--sensors: not together with --hil, whose autopilots have sensors of their own"
       _ <- autopilot.flatMap(_ => plant.refusesAutopilots).map("--plant: " + _).toLeft(())
       _ <- Expect.that(!options.ros.value || autopilot.isEmpty && !options.mavlink.value):
         "--ros: not together with --mavlink or --hil, which fly the vehicles themselves"
-      step <- options.rosStep.fold[Either[String, Option[Span]]](Right(None))(stepOf(_).map(Some(_)))
+      step <- Expect.optional(options.rosStep)(stepOf)
       _    <- Expect.that(step.isEmpty || options.ros.value)("--ros-step: expected together with --ros")
       flies = if options.ros.value then "--ros" else if autopilot.isDefined then "--hil" else "--mavlink"
       other = world.vehicles.find(vehicle => vehicle.isCar || vehicle.isCamera)
@@ -200,45 +198,45 @@ object ServeCommand
       step: Option[Span],
       notice: Option[String]
   ): Either[String, Unit] =
-    given system: ActorSystem = ActorSystem("skein")
-    try
-      val server =
-        Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system, ros.map(_.topics), step))
-      ros.foreach(_.fly(server, settings.world))
-      val vehicles = settings.world.vehicles.map(vehicle => TextTable.printable(vehicle.name)).mkString(", ")
-      val mavlink  = settings.mavlink.fold(""): open =>
-        s", and by MAVLink from UDP ports ${open.udp.map(port =>
-            s"${port.at.port}${port.tells.fold("")(to => s" to $to")}"
-          ).mkString(", ")}"
-      val hil = settings.hil.fold(""): open =>
-        s", for ${open.autopilot.label} at ${server.peerAddresses.mkString(", ")}"
-      val ofRos = ros.fold("")(_ => ", and to ROS 2")
-      Console.out.println(s"serving $vehicles at ${server.address}$mavlink$hil$ofRos; Ctrl-C ends it")
-      notice.foreach(line => Console.out.println(line))
-      val ended = Promise[Either[String, Unit]]()
-      server.failed.foreach(failure =>
-        ended.trySuccess(Left(s"the simulator at ${server.address} has failed and closed its port: $failure"))
-      )(using ExecutionContext.parasitic)
-      val telling =
-        system.scheduler.scheduleWithFixedDelay(NewsEvery, NewsEvery)(tellNews(server, settings, ros))(using
-          system.dispatcher
+    Edge.withSystem("skein"): system ?=>
+      try
+        val server =
+          Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system, ros.map(_.topics), step))
+        ros.foreach(_.fly(server, settings.world))
+        val vehicles =
+          settings.world.vehicles.map(vehicle => TextTable.printable(vehicle.name)).mkString(", ")
+        val mavlink = settings.mavlink.fold(""): open =>
+          s", and by MAVLink from UDP ports ${open.udp.map(port =>
+              s"${port.at.port}${port.tells.fold("")(to => s" to $to")}"
+            ).mkString(", ")}"
+        val hil = settings.hil.fold(""): open =>
+          s", for ${open.autopilot.label} at ${server.peerAddresses.mkString(", ")}"
+        val ofRos = ros.fold("")(_ => ", and to ROS 2")
+        Console.out.println(s"serving $vehicles at ${server.address}$mavlink$hil$ofRos; Ctrl-C ends it")
+        notice.foreach(line => Console.out.println(line))
+        val ended = Promise[Either[String, Unit]]()
+        server.failed.foreach(failure =>
+          ended.trySuccess(
+            Left(s"the simulator at ${server.address} has failed and closed its port: $failure")
+          )
+        )(using ExecutionContext.parasitic)
+        val telling =
+          system.scheduler.scheduleWithFixedDelay(NewsEvery, NewsEvery)(tellNews(server, settings, ros))(using
+            system.dispatcher
+          )
+        // The code it runs is compiled by then.
+        val leading =
+          system.scheduler.scheduleOnce(LeadsAfter)(ControlThreads.lead(): Unit)(using system.dispatcher)
+        val shown   = shows.map(TruthOnShow.start(settings, server, _, Clock.system))
+        val outcome = Edge.untilInterrupted(() => ended.trySuccess(Right(())): Unit, GraceMillis)(
+          Edge.await(ended.future)
         )
-      // The code it runs is compiled by then.
-      val leading =
-        system.scheduler.scheduleOnce(LeadsAfter)(ControlThreads.lead(): Unit)(using system.dispatcher)
-      val shown   = shows.map(TruthOnShow.start(settings, server, _, Clock.system))
-      val outcome = Edge.untilInterrupted(() => ended.trySuccess(Right(())): Unit, GraceMillis)(
-        Edge.await(ended.future)
-      )
-      telling.cancel()
-      leading.cancel()
-      shown.foreach(_.cancel())
-      Edge.await(server.close())
-      outcome
-    catch case error: TransportError => Left(error.getMessage)
-    finally
-      ros.foreach(_.close())
-      Edge.await(system.terminate()): Unit
+        telling.cancel()
+        leading.cancel()
+        shown.foreach(_.cancel())
+        Edge.await(server.close())
+        outcome
+      finally ros.foreach(_.close())
 
   /** Time for which clients' moves may hold all workers, as in AirSim. */
   private val Patience = Span.ofSeconds(30)

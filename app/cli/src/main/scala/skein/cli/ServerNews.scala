@@ -14,23 +14,23 @@ private[cli] object ServerNews:
       called: String = "MAVLink",
       hasHeldUp: Boolean = false
   ): Option[String] =
-    val counts = Seq(
+    val counts = happened(
       stats.turnedAway -> s"turned away because ${limits.connections} connections were open",
       stats.malformed  -> "closed for messages that were malformed or beyond a limit",
       stats.lacking    -> "requests and replies refused for more memory than was left for them",
       stats.overHeld   -> "closed for more memory than was left for them",
       stats.tooSlow    -> "closed for messages or replies that took too long",
       stats.idle       -> "closed for silence"
-    ).collect { case (count, what) if count > 0 => s"$count $what" }
-    val dropped = Option.when(stats.dropped > 0)(s"${stats.dropped} calls of closed connections dropped")
-    val ofPeers = Seq(
+    )
+    val dropped = happened(stats.dropped -> "calls of closed connections dropped")
+    val ofPeers = happened(
       peers.damaged    -> "damaged frames",
       peers.dropped    -> "datagrams dropped for peers too slow",
       peers.turnedAway -> "peers turned away",
       peers.ignored    -> "datagrams ignored, of too many peers or too many at once",
       peers.foreign    -> "connections closed that spoke another protocol",
       peers.unanswered -> "times lockstep lost for want of an answer within a second; time goes on without it"
-    ).collect { case (count, what) if count > 0 => s"$count $what" }
+    )
     val moves = Option.when(hasHeldUp):
       "moves have held all workers for too long: from now on no call waits behind them, and the newest move of a " +
         "vehicle wins immediately"
@@ -41,5 +41,9 @@ private[cli] object ServerNews:
         s"at most ${mebibytes(stats.mostHeldBytes)} of ${mebibytes(limits.heldBytes)} MiB were held for " +
           "clients at any time"
       (clients ++ dropped ++ others ++ moves ++ memory).mkString("; ")
+
+  /** What has happened at all, each with its count. */
+  def happened(counts: (Long, String)*): Seq[String] =
+    counts.collect { case (count, what) if count > 0 => s"$count $what" }
 
   private def mebibytes(bytes: Long): Long = (bytes + (1 << 20) - 1) >> 20

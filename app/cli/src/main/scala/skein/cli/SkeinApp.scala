@@ -46,7 +46,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   private def program = getClass.getName.stripSuffix("$")
 
   /** The commands by purpose, as `--help` lists them. */
-  private val groups: Seq[(String, Seq[Command])] = Seq(
+  private val groups: Seq[(String, Seq[Command[?]])] = Seq(
     "Fly" -> Seq(
       FlyCommand(),
       SpreadCommand(program),
@@ -75,7 +75,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     "Shell"                        -> Seq(CompletionCommand(commands))
   )
 
-  private[skein] final val commands: Seq[Command] = groups.flatMap(_._2)
+  private[skein] final val commands: Seq[Command[?]] = groups.flatMap(_._2)
 
   final def main(arguments: Array[String]): Unit =
     val status = Edge.tellingExit(run(arguments.toSeq))

@@ -50,20 +50,19 @@ private[cli] object SolverOptions:
   )
 
   /** Explains why a solver closes a connection without certificates, if it requires them. */
-  private[cli] def wantsTls(at: Address)(using system: ActorSystem): Future[Option[String]] =
-    Future(blocking(TlsProbe.answers(at)))(using system.dispatcher)
-      .map(Option.when(_)(
-        s"the solver at $at asks for certificates; expected --tls FOLDER with this machine's"
-      ))(using system.dispatcher)
+  private[cli] def wantsTls(at: Address)(using ActorSystem): Future[Option[String]] =
+    found(
+      TlsProbe.answers(at)
+    )(s"the solver at $at asks for certificates; expected --tls FOLDER with this machine's")
 
   /** Explains why a solver closes a connection with certificates, if it does not use TLS. */
-  private[cli] def lacksTls(at: Address)(using system: ActorSystem): Future[Option[String]] =
-    Future(blocking(TlsProbe.isRefused(at)))(using system.dispatcher)
-      .map(Option.when(_)(
-        s"the solver at $at does not speak TLS; expected ./skein decide with --tls there, too"
-      ))(
-        using system.dispatcher
-      )
+  private[cli] def lacksTls(at: Address)(using ActorSystem): Future[Option[String]] =
+    found(
+      TlsProbe.isRefused(at)
+    )(s"the solver at $at does not speak TLS; expected ./skein decide with --tls there, too")
+
+  private def found(is: => Boolean)(reason: String)(using system: ActorSystem): Future[Option[String]] =
+    Future(Option.when(blocking(is))(reason))(using system.dispatcher)
 
   private[cli] val HasTls = "; has ./skein decide there --tls, too?"
 

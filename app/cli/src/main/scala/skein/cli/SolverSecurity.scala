@@ -6,9 +6,8 @@ import java.util.Properties
 import javax.net.ssl.SSLContext
 import mainargs.{ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
-import skein.cluster.{Endpoint, Tls}
+import skein.cluster.{Tls, isLoopback}
 import skein.kafka.KafkaCertificates
-import skein.link.Address
 import skein.settings.SolverChoice
 import skein.units.Expect
 
@@ -75,8 +74,6 @@ object SolverSecurity:
     * @param kafka settings of Kafka's clients
     */
   final case class Checked(certificates: Option[SSLContext], kafka: Map[String, String])
-
-  private def isLoopback(at: Address) = Endpoint(at.host, at.port).isLoopback
 
   /** Kafka's settings with these certificates, after checking that they are readable. */
   private def ofKafka(tls: Tls): Either[String, Map[String, String]] =

@@ -28,7 +28,7 @@ final case class SpreadOptions(
 /** @param program the class whose `main` starts the commands
   */
 final class SpreadCommand(program: String)(using Scenarios)
-    extends OptionsCommand[SpreadOptions](
+    extends Command[SpreadOptions](
       "spread",
       "flies each loop over each link many times in virtual time, and shows mean and spread",
       ParserForClass[SpreadOptions]
@@ -50,15 +50,13 @@ final class SpreadCommand(program: String)(using Scenarios)
       _        <- Expect.that(settings.only.isEmpty)("--only: expected with fly alone")
       _        <- Expect.that(settings.images.isEmpty):
         "--images: expected with fly alone; spread keeps no recordings"
-      _ <- Expect.that(options.seeds >= 1 && options.seeds <= SpreadCommand.MostSeeds):
-        s"--seeds: expected 1 to ${SpreadCommand.MostSeeds}, got ${options.seeds}"
+      _       <- Expect.within("--seeds", options.seeds, 1, SpreadCommand.MostSeeds)
       cluster <- options.cluster.checked
       _       <- Expect.that(cluster.flatMap(_.block).forall(_ == 1)):
         "--block: expected 1, since each flight is a block of its " +
           s"own, got ${options.cluster.block.getOrElse(0)}"
-      out <- options.out
-        .orElse(cluster.map(_ => OutFolder.dated("spread")))
-        .fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      named = options.out.orElse(cluster.map(_ => OutFolder.dated("spread")))
+      out <- Expect.optional(named)(OutFolder.made("--out", _))
       ready = SpreadQuestion.Ready(settings)
       plans = ready.flights(options.seeds)
       shown = Shown(options.json.value)

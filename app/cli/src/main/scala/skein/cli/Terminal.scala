@@ -31,12 +31,12 @@ private[cli] object Terminal:
     '’' -> "'"
   )
 
+  def isThere: Boolean = System.console() != null && System.console().isTerminal
+
   /** Columns of the terminal; None if there is none, or it does not report them. */
   def width: Option[Int] =
-    Option(System.console())
-      .filter(_.isTerminal)
-      .flatMap(_ => Try(Using.resource(TerminalBuilder.builder().dumb(true).build())(_.getWidth)).toOption)
-      .filter(_ > 0)
+    if !isThere then None
+    else Try(Using.resource(TerminalBuilder.builder().dumb(true).build())(_.getWidth)).toOption.filter(_ > 0)
 
   /** Makes both outputs readable on terminals with another charset, such as ASCII. To be called before
     * anything is printed.

@@ -39,7 +39,7 @@ final case class TortureOptions(
 /** @param program the class whose `main` starts the commands
   */
 final class TortureCommand(program: String)(using scenarios: Scenarios)
-    extends OptionsCommand[TortureOptions](
+    extends Command[TortureOptions](
       "torture",
       "flies teams in virtual time through injected faults, and checks ages, order and completeness of each flight",
       ParserForClass[TortureOptions]
@@ -74,7 +74,7 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
       _ <- Expect.that(cluster.isDefined || options.out.isEmpty):
         "--out: expected with --workers or --cluster, for what they computed"
       shown = Shown(options.json.value)
-      scene <- options.scene.fold(Right(None))(NamedScene.read(_).map(Some(_)).left.map("--scene: " + _))
+      scene <- Expect.optional(options.scene)(NamedScene.read(_).left.map("--scene: " + _))
       named <- Expect.each(options.scenario)(ScenarioSettings.named).left.map("--scenario: " + _)
       task     = named.headOption.orElse(scenarios.firstWithoutGame.map(_ => scenarios.kinds.head.name))
       question = TortureQuestion.of(duration, task, scene)

@@ -25,11 +25,11 @@ private[cli] final case class TortureQuestion(
   /** @return Left says what was expected, what was given, and in which option */
   def ready(using Scenarios): Either[String, TortureQuestion.Ready] =
     for
-      task <- scenario.fold(Right(None))(TortureQuestion.standard(_).map(Some(_)))
+      task <- Expect.optional(scenario)(TortureQuestion.standard(_))
       _    <- Expect.that(task.forall(_.agents.forall(_.kind == VehicleKind.Multirotor))):
         s"--scenario ${scenario.getOrElse("")}: expected multirotors, " +
           "got cars, whose commands torture does not follow"
-      scene <- scene.fold(Right(None))(NamedScene.ofRecording(_).map(Some(_)).left.map("--scene: " + _))
+      scene <- Expect.optional(scene)(NamedScene.ofRecording(_).left.map("--scene: " + _))
     yield TortureQuestion.Ready(Span.ofNanos(durationNanos), task, scene)
 
 private[cli] object TortureQuestion:

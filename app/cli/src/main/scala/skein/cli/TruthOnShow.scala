@@ -3,7 +3,7 @@ package skein.cli
 import java.util.concurrent.atomic.AtomicLong
 import org.apache.pekko.actor.{ActorSystem, Cancellable}
 import scala.concurrent.duration.DurationInt
-import skein.record.{FlightRow, RecordingHeader, ReadingRow, Simulator, VehicleRow}
+import skein.record.{RecordingHeader, ReadingRow, VehicleRow}
 import skein.signal.Stamped
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
@@ -31,17 +31,11 @@ private[cli] object TruthOnShow:
     )
 
   private def heading(settings: SimulatorSettings, server: SimulatorServer, now: Instant) = RecordingHeader(
-    FlightRow(
+    LoopOnShow.flight(
       "simulator",
-      "none",
-      "none",
-      0,
       Span.ofNanos(Every.toNanos),
-      Span.Zero,
-      "real",
-      Simulator.Other(server.address.toString),
+      server.address.toString,
       "where vehicles truly are",
-      "",
       now
     ),
     settings.world.vehicles.map(vehicle =>

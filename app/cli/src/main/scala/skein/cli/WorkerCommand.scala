@@ -5,7 +5,7 @@ import java.time.LocalTime
 import java.time.format.DateTimeFormatter
 import mainargs.{Flag, ParserForClass, arg}
 import scala.concurrent.duration.DurationLong
-import skein.cluster.{Tls, WorkerNode, WorkerProcesses}
+import skein.cluster.{Tls, WorkerNode, WorkerProcesses, isLoopback}
 import skein.scenario.Scenarios
 import skein.units.{Expect, Span}
 
@@ -30,7 +30,7 @@ final case class WorkerOptions(
 
 /** `./skein worker`: computes for a command on this machine or another. */
 final class WorkerCommand(using Scenarios)
-    extends OptionsCommand[WorkerOptions](
+    extends Command[WorkerOptions](
       "worker",
       "computes for a command of this machine or another, until the command has all answers",
       ParserForClass[WorkerOptions]
@@ -45,7 +45,7 @@ final class WorkerCommand(using Scenarios)
     for
       join     <- ClusterOptions.endpoint("--join", options.join)
       listen   <- options.listen.fold(Right(ClusterOptions.Loopback))(ClusterOptions.endpoint("--listen", _))
-      tls      <- options.tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
+      tls      <- Expect.optional(options.tls)(folder => Tls.of(Path.of(folder)))
       threads  <- ForwardOptions.threadCount(options.threads)
       patience <- Span.parse(options.patience).left.map("--patience: " + _)
       _        <- Expect.that(patience <= LongestPatience):

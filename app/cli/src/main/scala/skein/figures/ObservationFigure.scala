@@ -8,34 +8,38 @@ import skein.plot.*
   * means, if there are any; in the charts of ages, outlines are the true ages.
   */
 object ObservationFigure:
-  private val barWidth  = 20.0
-  private val loopGap   = 14.0
-  private val linkGap   = 32.0
-  private val barHeight = 150.0
-  private val palePart  = 0.45
+  private val barWidth = 20.0
+  private val loopGap  = 14.0
+  private val linkGap  = 32.0
+  private val left     = 46.0
+  private val palePart = 0.45
 
   def apply(set: FlightSet): Option[Drawing] =
     val flights = set.flights.filter(_.roles.nonEmpty)
     Option.when(flights.nonEmpty):
-      Drawing.stacked(
-        Drawing.grid(FlightSummary.observations(flights).map(panel(_, flights)), columns = 2),
-        legend(flights)
-      )
+      val panels = Drawing.grid(FlightSummary.observations(flights).map(panel(_, flights)), columns = 2)
+      Drawing.stacked(panels, Legend.rows(left, panels.width - left, legend(flights)*))
+
+  /** A panel for bars of milliseconds.
+    *
+    * @param highest the highest bar, ms
+    */
+  private[figures] def bars(width: Double, highest: Double): Panel = Panel(
+    PlotAxis.exactly("", 0, width, 1),
+    PlotAxis.around("ms", 0, highest * 1.06),
+    left,
+    top = 34,
+    width,
+    height = 150
+  )
 
   private def panel(observation: TimingObservation, flights: Vector[FlightSummary]): Drawing =
-    val bars    = flights.flatMap(summary => summary.roles.map(role => bar(observation, summary, role)))
-    val highest = bars.flatMap(bar => bar.mean ++ bar.published ++ bar.trueAge).maxOption.getOrElse(1.0)
+    val shown   = flights.flatMap(summary => summary.roles.map(role => bar(observation, summary, role)))
+    val highest = shown.flatMap(bar => bar.mean ++ bar.published ++ bar.trueAge).maxOption.getOrElse(1.0)
     val lefts   = placed(flights)
     val width   = lefts.last + widthOf(flights.last) + loopGap
-    val panel   = Panel(
-      PlotAxis.exactly("", 0, width, 1),
-      PlotAxis.around("ms", 0, highest * 1.06),
-      left = 46,
-      top = 34,
-      width,
-      barHeight
-    )
-    val groups = flights.zip(lefts).flatMap: (summary, left) =>
+    val panel   = bars(width, highest)
+    val groups  = flights.zip(lefts).flatMap: (summary, left) =>
       val drawn = summary.roles.zipWithIndex.flatMap: (role, index) =>
         draw(panel, bar(observation, summary, role), panel.left + left + index * barWidth, pale = index > 0)
       val middle = panel.left + left + widthOf(summary) / 2
@@ -51,7 +55,7 @@ object ObservationFigure:
       )
     val title = panel.title(observation.title.capitalize)
     val rules = panel.rules(panel.left, panel.right)
-    Drawing(width + 76, barHeight + 78, (title +: rules) ++ panel.yAxis ++ groups ++ links)
+    Drawing(width + 76, panel.height + 78, (title +: rules) ++ panel.yAxis ++ groups ++ links)
 
   private final case class Bar(
       colour: Colour,
@@ -96,21 +100,20 @@ object ObservationFigure:
           left + widthOf(one).max(44) + (if one.flight.link == next.flight.link then loopGap else linkGap)
       .toVector
 
-  private def legend(flights: Vector[FlightSummary]): Drawing =
+  private def legend(flights: Vector[FlightSummary]): Seq[Legend.Item] =
     val grey             = Colour(0x666666)
     def role(place: Int) = flights.flatMap(_.roles.lift(place)).map(_.role).distinct.mkString(", ")
     val full             = Legend.box(s"deciding for the ${role(0)}", grey)
     val pale             =
       Option.when(role(1).nonEmpty)(Legend.box(s"for the ${role(1)}", grey.tinted(palePart)))
     val paper = Option.when(flights.exists(_.published.nonEmpty)):
-      Legend.Item("paper", 8, at => Vector(FlightTheme.diamond(at.moved(4, 0))))
-    val items = Seq(full) ++ pale ++ paper ++ Seq(
+      Legend.sign("paper")(FlightTheme.diamond(_))
+    Seq(full) ++ pale ++ paper ++ Seq(
       Legend.Item(
         "true age, by the simulator's clock",
         12,
         at => Vector(Mark.outline(at.x, at.y - 6, at.x + 12, at.y + 6, trueAgeLine(grey)))
       )
     )
-    Legend(46, items*)
 
   private def trueAgeLine(colour: Colour): Stroke = Stroke(colour, 0.9, Vector(2.5, 1.8))

@@ -12,7 +12,6 @@ object ObservedFigure:
   private val whisker  = Stroke(Colour(0x111111), 1.2)
   private val barWidth = 26.0
   private val place    = 72.0
-  private val height   = 150.0
 
   def apply(observed: Vector[ObservedVehicle]): Option[Drawing] =
     val vehicles = observed.filter(_.commands > 0).take(Most)
@@ -21,7 +20,7 @@ object ObservedFigure:
     val most   = panels.flatMap((_, of) => vehicles.flatMap(of)).map(_.p99).maxOption.getOrElse(1.0)
     Option.when(panels.nonEmpty):
       Drawing.stacked(
-        Drawing.grid(panels.map(panel(_, _, vehicles, most)), columns = panels.size.min(2)),
+        Drawing.grid(panels.map(panel(_, _, vehicles, most)), columns = 2),
         Legend(46, Legend.box("mean", colour), Legend.line("99 % are shorter", whisker))
       )
 
@@ -41,15 +40,8 @@ object ObservedFigure:
       most: Double
   ): Drawing =
     val width = place * vehicles.size.max(3)
-    val panel = Panel(
-      PlotAxis.exactly("", 0, width, 1),
-      PlotAxis.around("ms", 0, most * 1.06),
-      left = 46,
-      top = 34,
-      width,
-      height
-    )
-    val bars = vehicles.zipWithIndex.flatMap: (vehicle, index) =>
+    val panel = ObservationFigure.bars(width, most)
+    val bars  = vehicles.zipWithIndex.flatMap: (vehicle, index) =>
       val middle = panel.left + width * (index + 0.5) / vehicles.size
       val name   = if vehicle.name.isEmpty then "(the first)" else vehicle.name.take(12)
       val label  = Mark.Text(Point(middle, panel.bottom + 13), name, Theme.smallSize, anchor = Anchor.Middle)
@@ -60,4 +52,4 @@ object ObservedFigure:
           Mark.line(Point(middle, panel.atY(values.p99)), Point(middle, panel.atY(values.mean)), whisker)
         )
     val rules = panel.rules(panel.left, panel.right)
-    Drawing(width + 76, height + 66, (panel.title(title) +: rules) ++ panel.yAxis ++ bars)
+    Drawing(width + 76, panel.height + 66, (panel.title(title) +: rules) ++ panel.yAxis ++ bars)

@@ -95,7 +95,7 @@ object PredictionFigure:
     val label   = s"${kind.name}, ${share.name}"
     val isCurve = groups.exists(kind.of(_).stretches.exists(_.sizeIs >= FewestOfCurve))
     if isCurve then Legend.line(label, share.stroke(kind))
-    else Legend.Item(label, 8, at => Vector(sign(at.moved(4, 0), share.stroke(kind), share.isHollow)))
+    else Legend.sign(label)(sign(_, share.stroke(kind), share.isHollow))
 
   /** The legend, with a row for each kind, so that it is no wider than a panel. */
   private def legend(groups: Vector[PredictionGroup], kinds: Vector[Kind]): Drawing =

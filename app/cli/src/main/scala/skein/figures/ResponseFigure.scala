@@ -76,7 +76,7 @@ object ResponseFigure:
 
   private def legend: Drawing =
     def dot(label: String, colour: Colour) =
-      Legend.Item(label, 8, at => Vector(Mark.Disc(at.moved(4, 0), 2.4, None, Some(colour.faded(0.6)))))
+      Legend.sign(label)(Mark.Disc(_, 2.4, None, Some(colour.faded(0.6))))
     Legend(
       52,
       dot("north, measured", north.colour),

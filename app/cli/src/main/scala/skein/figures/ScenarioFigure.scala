@@ -232,7 +232,7 @@ object ScenarioFigure:
       else many(s"${name}s, the first $MostInLegend", kinds.take(MostInLegend))
 
   private def disc(label: String, radius: Double, edge: Option[Stroke], fill: Option[Colour]): Legend.Item =
-    Legend.Item(label, 8, at => Vector(Mark.Disc(at.moved(4, 0), radius, edge, fill)))
+    Legend.sign(label)(Mark.Disc(_, radius, edge, fill))
 
   /** A legend entry of several lines; dashed lines are long enough to be distinguished. */
   private def many(label: String, strokes: Vector[Stroke]): Legend.Item =

@@ -59,8 +59,8 @@ object TrajectoryFigure:
           )
       ),
       Legend.line("evader", thick(FlightTheme.evader)),
-      Legend.Item("start", 8, at => Vector(start(at.moved(4, 0), Theme.labelColour))),
-      Legend.Item("end", 8, at => Vector(end(at.moved(4, 0), Theme.labelColour)))
+      Legend.sign("start")(start(_, Theme.labelColour)),
+      Legend.sign("end")(end(_, Theme.labelColour))
     )
 
   private def thick(colour: Colour): Stroke = FlightTheme.line(colour, 2.2)

@@ -44,20 +44,15 @@ object MarginFigure:
       Mark.Disc(panel.at(point.meanMs, point.stats.mean), 3.5, None, Some(measured))
     )
     val found = curve.margin match
-      case Bound.At(ms) =>
-        Vector(Mark.line(Point(panel.atX(ms), panel.top), Point(panel.atX(ms), panel.bottom), left))
-      case _ => Vector.empty
-    val legend = Legend(
-      panel.left,
+      case Bound.At(ms) => Vector(panel.upright(ms, left))
+      case _            => Vector.empty
+    Legend.between(
+      panel,
+      s"${judge.name} of the program",
+      (band +: panel.axes) ++ spans ++
+        Vector(panel.curve(points.map(point => (point.meanMs, point.stats.mean)), line)) ++ discs ++ found,
       Vector(
         Legend.line("mean and 95 % interval", line),
         Legend.box(s"within ${curve.tolerance.text(judge.unit)} of no link", tolerated)
       ) ++ found.map(_ => Legend.line("margin", left))*
-    )
-    Drawing(
-      panel.right + 40,
-      panel.bottom + 44,
-      (panel.title(s"${judge.name} of the program").moved(0, -22) +: legend.shapes.map(_.moved(0, 22))) ++
-        (band +: panel.axes) ++ spans ++
-        Vector(panel.curve(points.map(point => (point.meanMs, point.stats.mean)), line)) ++ discs ++ found
     )

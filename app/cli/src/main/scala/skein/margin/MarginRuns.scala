@@ -1,7 +1,7 @@
 package skein.margin
 
-import java.util.concurrent.{Callable, Executors}
 import scala.util.control.NonFatal
+import skein.flight.InParallel
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.Decimals.brief
 
@@ -35,18 +35,13 @@ final class MarginRuns(
       first.ended.run.value match
         case Left(MarginRun.NoResult.OfProgram(why)) if !first.ended.isCut => Left(s"without a link: $why")
         case _                                                             =>
-          val pool = Executors.newFixedThreadPool(atOnce, Thread.ofPlatform().daemon().factory())
-          try
-            val others =
-              for
-                repeat <- (0 until repeats).toVector
-                link   <- links.indices if repeat > 0 || link > 0
-              yield pool.submit((
-                  () =>
-                    Option.unless(isStopped())(further(links, Run(link, repeat)))
-              ): Callable[Option[Done]])
-            Right(flown(links, first +: others.flatMap(_.get())))
-          finally pool.shutdown()
+          val others =
+            for
+              repeat <- (0 until repeats).toVector
+              link   <- links.indices if repeat > 0 || link > 0
+            yield Run(link, repeat)
+          val done = InParallel.map(others, atOnce)(run => Option.unless(isStopped())(further(links, run)))
+          Right(flown(links, first +: done.flatten))
 
   private def one(links: Vector[LatencyProfile], which: Run): Either[String, Done] =
     run(links(which.link), SplitMix64.seedOf(seed, which.repeat * links.size + which.link))

@@ -16,23 +16,26 @@ import skein.signal.LatencyProfile
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
 
-/** Runs a program against a simulator of its own, in real time.
+/** A program and how it is judged.
   *
   * @param command `{port}` in its words stands for the simulator's port
   * @param scenario the scenario whose vehicles hover at their starts when the program begins
   * @param lasts maximum duration of a run; a program that still runs is stopped then
   * @param skip time after the first command that is not scored
   */
-final class MarginTrial(
+final case class MarginTask(
     command: Seq[String],
     world: WorldSettings,
     scene: Scene,
     scenario: Option[Scenario],
     judge: MarginJudge,
     lasts: Span,
-    skip: Span,
-    clock: Clock
-)(using ActorSystem):
+    skip: Span
+)
+
+/** Runs a program against a simulator of its own, in real time. */
+final class MarginTrial(task: MarginTask, clock: Clock)(using ActorSystem):
+  import task.*
   import MarginTrial.*
   private given ExecutionContext = ExecutionContext.parasitic
 
@@ -129,7 +132,7 @@ final class MarginTrial(
     /** Notes whether the program was ended early: by us, or by Ctrl-C, perhaps before that is known here. */
     def stopped(): Unit = isCut = !isOver && isStopped()
 
-    private def isOver = course.lasted >= MarginTrial.this.lasts
+    private def isOver = course.lasted >= task.lasts
 
     def untilEnd(): Unit =
       var ticks = 0L

@@ -20,6 +20,9 @@ object Legend:
   def box(label: String, fill: Colour): Item =
     Item(label, 12, at => Vector(Mark.box(at.x, at.y - 6, at.x + 12, at.y + 6, fill)))
 
+  /** An item for a sign of one mark, given its middle. */
+  def sign(label: String)(mark: Point => Mark): Item = Item(label, 8, at => Vector(mark(at.moved(4, 0))))
+
   /** Items from left to right; texts may be slightly narrower or wider than their estimated width. */
   def apply(left: Double, items: Item*): Drawing =
     val starts = items.scanLeft(left)(_ + room(_))
@@ -40,6 +43,15 @@ object Legend:
       val beside = legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))
       drawn.copy(shapes = shapes ++ beside)
     else Drawing.stacked(drawn.copy(shapes = shapes), rows(panel.left, panel.width, items*))
+
+  /** The picture of a panel: its title, a line with the legend, and the panel with these shapes. */
+  def between(panel: Panel, title: String, shapes: Vector[Mark], items: Item*): Drawing =
+    val legend = Legend(panel.left, items*).shapes.map(_.moved(0, 22))
+    Drawing(
+      panel.right + 40,
+      panel.bottom + 44,
+      (panel.title(title).moved(0, -22) +: legend) ++ shapes
+    )
 
   /** Items in rows no longer than `width`, unless one item is. */
   def rows(left: Double, width: Double, items: Item*): Drawing =

@@ -26,28 +26,30 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
       val to    = if one._2 > y.to || other._2 > y.to then y.to else y.from
       val share = (to - one._2) / (other._2 - one._2)
       (one._1 + (other._1 - one._1) * share, to)
-    val pieces = values.zip(values.drop(1)).foldLeft(Vector.empty[Vector[(Double, Double)]]):
-      case (done, (one, other)) =>
-        (isIn(one), isIn(other)) match
-          case (true, true) if done.lastOption.exists(_.last == one)  => done.init :+ (done.last :+ other)
-          case (true, true)                                           => done :+ Vector(one, other)
-          case (true, false) if done.lastOption.exists(_.last == one) =>
-            done.init :+ (done.last :+ edge(one, other))
-          case (true, false) => done :+ Vector(one, edge(one, other))
-          case (false, true) => done :+ Vector(edge(one, other), other)
-          case _             => done
+    val seen = values.zip(values.drop(1)).flatMap: (one, other) =>
+      (isIn(one), isIn(other)) match
+        case (true, true)  => Some((one, other))
+        case (true, false) => Some((one, edge(one, other)))
+        case (false, true) => Some((edge(one, other), other))
+        case _             => None
+    val pieces = seen.foldLeft(Vector.empty[Vector[(Double, Double)]]):
+      case (done :+ piece, (from, to)) if piece.last == from => done :+ (piece :+ to)
+      case (done, (from, to))                                => done :+ Vector(from, to)
     pieces.map(curve(_, stroke))
 
   /** A horizontal line from the left edge to the right one. */
   def level(value: Double, stroke: Stroke): Mark =
     Mark.line(Point(left, atY(value)), Point(right, atY(value)), stroke)
 
+  /** A vertical line from the upper edge to the lower one. */
+  def upright(value: Double, stroke: Stroke): Mark =
+    Mark.line(Point(atX(value), top), Point(atX(value), bottom), stroke)
+
   /** Grid, lines, numbers and names of both axes; to be painted below the values. */
   def axes: Vector[Mark] = grid ++ xAxis ++ yAxis
 
   private def grid: Vector[Mark] =
-    x.ticks.map(tick => Mark.line(Point(atX(tick), top), Point(atX(tick), bottom), gridLine)) ++
-      rules(left, right)
+    x.ticks.map(upright(_, gridLine)) ++ rules(left, right)
 
   /** Horizontal lines at the ticks of the vertical axis. */
   def rules(from: Double, to: Double): Vector[Mark] =

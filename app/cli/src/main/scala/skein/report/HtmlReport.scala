@@ -13,24 +13,13 @@ import skein.units.Decimals.brief
 object HtmlReport:
 
   /** @param sections the report's sections, by [[ReportSections.of]] */
-  def render(set: FlightSet, sections: Seq[Section]): String =
-    val page = html(
-      lang := "en",
-      head(
-        meta(charset := "utf-8"),
-        meta(name    := "viewport", content := "width=device-width, initial-scale=1"),
-        pageTitle(heading(set)),
-        tag("style")(raw(style))
-      ),
-      body(
-        h1(heading(set)),
-        p(cls := "lead", abstractOf(set)),
-        remarks(set),
-        sections.map(part),
-        section(h2("Run parameters"), table(parameters(set)))
-      )
-    )
-    s"<!doctype html>\n${page.render}\n"
+  def render(set: FlightSet, sections: Seq[Section]): String = page(
+    heading(set),
+    p(cls := "lead", abstractOf(set)),
+    remarks(set),
+    sections.map(part),
+    section(h2("Run parameters"), table(parameters(set)))
+  )
 
   private def heading(set: FlightSet): String =
     set.flights.map(_.flight.scenario).distinct match
@@ -45,16 +34,20 @@ object HtmlReport:
 
   /** A page on the spread of many flights of each loop over each link. */
   def spread(flights: Int, sections: Seq[Section]): String =
-    val title = s"Skein: spread over $flights flights"
-    val page  = html(
+    page(s"Skein: spread over $flights flights", sections.map(part))
+
+  private def page(title: String, parts: Frag*): String =
+    val whole = html(
       lang := "en",
-      head(meta(charset := "utf-8"), pageTitle(title), tag("style")(raw(style))),
-      body(
-        h1(title),
-        sections.map(part)
-      )
+      head(
+        meta(charset := "utf-8"),
+        meta(name    := "viewport", content := "width=device-width, initial-scale=1"),
+        pageTitle(title),
+        tag("style")(raw(style))
+      ),
+      body(h1(title), parts)
     )
-    s"<!doctype html>\n${page.render}\n"
+    s"<!doctype html>\n${whole.render}\n"
 
   private def part(shown: Section): TypedTag[String] = section(
     h2(shown.title),
@@ -82,34 +75,20 @@ object HtmlReport:
     (SummaryTables.remarks(set) ++ TimingVerdict.sentence(set)).map(line => p(cls := "note", strong(line)))
 
   private def parameters(set: FlightSet): TextTable =
-    TextTable(
-      Vector(
-        "<flight",
-        "<loop",
-        "<link",
-        "seed",
-        "period ms",
-        "duration s",
-        "<clock",
-        "<simulator",
-        "<scenario"
-      ) ++
-        Vector("<version", "<started (UTC)"),
-      (set.flights ++ set.twins.flatMap(_.virtual)).distinctBy(_.flight).map: summary =>
-        import summary.flight
-        Vector(
-          flight.id,
-          flight.loop,
-          flight.link,
-          flight.seed.toString,
-          flight.period.toMillis.brief,
-          flight.duration.toSeconds.brief,
-          flight.clock,
-          summary.simulator,
-          flight.scenario,
-          flight.version,
-          java.time.Instant.ofEpochSecond(flight.startedAt.toNanos / 1_000_000_000L).toString
-        )
+    TextTable.of((set.flights ++ set.twins.flatMap(_.virtual)).distinctBy(_.flight))(
+      "<flight"        -> (_.flight.id),
+      "<loop"          -> (_.flight.loop),
+      "<link"          -> (_.flight.link),
+      "seed"           -> (_.flight.seed.toString),
+      "period ms"      -> (_.flight.period.toMillis.brief),
+      "duration s"     -> (_.flight.duration.toSeconds.brief),
+      "<clock"         -> (_.flight.clock),
+      "<simulator"     -> (_.simulator),
+      "<scenario"      -> (_.flight.scenario),
+      "<version"       -> (_.flight.version),
+      "<started (UTC)" -> (flown =>
+        java.time.Instant.ofEpochSecond(flown.flight.startedAt.toNanos / 1_000_000_000L).toString
+      )
     )
 
   private val style =

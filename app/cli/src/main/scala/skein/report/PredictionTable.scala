@@ -1,34 +1,34 @@
 package skein.report
 
-import skein.measure.{Distribution, PredictionGroup}
+import skein.measure.{Distribution, PredictionErrors, PredictionGroup}
 import skein.units.Decimals.{brief, fixed}
 
 /** Errors of predictions, as a table. */
 object PredictionTable:
 
   def of(groups: Vector[PredictionGroup]): TextTable =
-    val isSeveral = groups.exists(_.scenario.nonEmpty)
-    TextTable(
-      Option.when(isSeveral)("<scenario").toVector ++ Vector(
-        "<loop",
-        "<link",
-        "<of",
-        "made",
-        "unverified",
-        "carried by ms",
-        "p50 mm",
-        "p95 mm",
-        "p95 at 100 ms, mm"
-      ),
+    val rows =
       for
         group           <- groups
         (whose, errors) <- Vector("own vehicle" -> group.own, "others" -> group.others)
         if errors.made > 0
-      yield Option.when(isSeveral)(group.scenario).toVector ++
-        Vector(group.name, group.link, whose, errors.made.toString, errors.unverified.toString) ++ Vector(
-          Distribution.of(errors.samples.map(_._1)).map(_.median).fold("")(_.brief),
-          errors.errors.fold("")(all => (1000 * all.median).fixed(1)),
-          errors.errors.fold("")(all => (1000 * all.quantile(0.95)).fixed(1)),
-          errors.around(100).fold("")(all => (1000 * all.quantile(0.95)).fixed(1))
-        )
-    )
+      yield (group = group, whose = whose, errors = errors)
+    TextTable.of(rows)(columns.drop(if groups.exists(_.scenario.nonEmpty) then 0 else 1)*)
+
+  private type Row = (group: PredictionGroup, whose: String, errors: PredictionErrors)
+
+  private val columns = Vector[TextTable.Column[Row]](
+    "<scenario"         -> (_.group.scenario),
+    "<loop"             -> (_.group.name),
+    "<link"             -> (_.group.link),
+    "<of"               -> (_.whose),
+    "made"              -> (_.errors.made.toString),
+    "unverified"        -> (_.errors.unverified.toString),
+    "carried by ms"     -> (row => Distribution.of(row.errors.samples.map(_._1)).fold("")(_.median.brief)),
+    "p50 mm"            -> (row => mm(row.errors.errors, 0.5)),
+    "p95 mm"            -> (row => mm(row.errors.errors, 0.95)),
+    "p95 at 100 ms, mm" -> (row => mm(row.errors.around(100), 0.95))
+  )
+
+  private def mm(errorsM: Option[Distribution], p: Double) =
+    errorsM.fold("")(all => (1000 * all.quantile(p)).fixed(1))

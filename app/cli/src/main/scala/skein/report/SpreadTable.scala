@@ -14,48 +14,31 @@ object SpreadTable:
   def of(flights: Seq[FlightSummary]): TextTable =
     val truths = Truth.among(flights)
     val groups = flights.groupBy(summary => (summary.name, summary.flight.link))
-    val order  = flights.map(summary => (summary.name, summary.flight.link)).distinct
-    TextTable(
-      Vector(
-        "<loop",
-        "<link",
-        "flights",
-        "last 10 s m",
-        "sd",
-        "least",
-        "most",
-        "sd within",
-        "closest m",
-        "captured",
-        "vs paused"
-      ),
-      order.toVector.map: group =>
-        val mean    = meanDistance(groups(group))
-        val within  = distribution(groups(group), _.lastTenSeconds.map(_.sd))
-        val closest = distribution(groups(group), curve => Some(curve.closest._2))
-
-        def metres(of: Option[Distribution], value: Distribution => Double) =
-          of.fold("")(distances => value(distances).fixed(2))
-        Vector(
-          group._1,
-          group._2,
-          mean.fold(groups(group).size)(_.count).toString,
-          metres(mean, _.mean),
-          metres(mean.filter(_.count > 1), _.sampleSd),
-          metres(mean, _.least),
-          metres(mean, _.most),
-          metres(within, _.mean),
-          metres(closest, _.mean),
-          closest.fold("")(_.sorted.count(_ < PlanTable.CaptureM).toString),
-          Distribution.of(groups(group).flatMap(truths.deviation))
-            .fold("")(share => s"${(100 * share.mean).signed(1)} %")
+    TextTable.of(flights.map(summary => (summary.name, summary.flight.link)).distinct.map(groups))(
+      "<loop"       -> (_.head.name),
+      "<link"       -> (_.head.flight.link),
+      "flights"     -> (group => mean(group).fold(group.size)(_.count).toString),
+      "last 10 s m" -> metres(mean, _.mean),
+      "sd"          -> metres(mean(_).filter(_.count > 1), _.sampleSd),
+      "least"       -> metres(mean, _.least),
+      "most"        -> metres(mean, _.most),
+      "sd within"   -> metres(over(_, _.lastTenSeconds.map(_.sd)), _.mean),
+      "closest m"   -> metres(closest, _.mean),
+      "captured"    -> (closest(_).fold("")(_.sorted.count(_ < PlanTable.CaptureM).toString)),
+      "vs paused"   -> (group =>
+        Distribution.of(group.flatMap(truths.deviation)).fold("")(share =>
+          s"${(100 * share.mean).signed(1)} %"
         )
+      )
     )
 
-  private def meanDistance(flights: Seq[FlightSummary]) = distribution(flights, _.lastTenSeconds.map(_.mean))
+  private def metres(of: Seq[FlightSummary] => Option[Distribution], value: Distribution => Double)(
+      group: Seq[FlightSummary]
+  ) = of(group).fold("")(distances => value(distances).fixed(2))
 
-  private def distribution(
-      flights: Seq[FlightSummary],
-      of: DistanceCurve => Option[Double]
-  ): Option[Distribution] =
-    Distribution.of(flights.flatMap(_.distance).flatMap(of))
+  private def mean(group: Seq[FlightSummary]) = over(group, _.lastTenSeconds.map(_.mean))
+
+  private def closest(group: Seq[FlightSummary]) = over(group, curve => Some(curve.closest._2))
+
+  private def over(group: Seq[FlightSummary], of: DistanceCurve => Option[Double]): Option[Distribution] =
+    Distribution.of(group.flatMap(_.distance).flatMap(of))

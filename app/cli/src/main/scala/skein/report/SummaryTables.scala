@@ -145,22 +145,20 @@ object SummaryTables:
 
   /** Remarks on single flights, one line each. */
   def remarks(set: FlightSet): Vector[String] =
-    withoutResult(set) ++ cutShort(set) ++ starved(set) ++ paused(set) ++ imageless(set) ++
+    def each[A](of: FlightSummary => Iterable[A])(line: (String, A) => String) =
+      for
+        summary <- set.all
+        found   <- of(summary)
+      yield line(summary.flight.id, found)
+    each(_.noResult)((id, none) => s"$id has no result: ${none.why}") ++
+      cutShort(set) ++
+      each(_.starved)((id, why) => s"$id was starved, and is not compared with other flights: $why") ++
+      each(_.paused)((id, span) =>
+        s"$id was paused for ${span.toSeconds.fixed(1)} s: its vehicles hovered and " +
+          "nothing was decided; its times and distances include this, so it is not compared with other flights"
+      ) ++
+      each(_.imageless)((id, camera) => s"$id: $camera") ++
       unknown(set) ++ waiting(set)
-
-  /** A line for each flight that has no result. */
-  private def withoutResult(set: FlightSet): Vector[String] =
-    for
-      summary <- set.all
-      none    <- summary.noResult
-    yield s"${summary.flight.id} has no result: ${none.why}"
-
-  /** A line for each flight whose timing suffered from a busy machine. */
-  private def starved(set: FlightSet): Vector[String] =
-    for
-      summary <- set.all
-      why     <- summary.starved
-    yield s"${summary.flight.id} was starved, and is not compared with other flights: $why"
 
   /** A line for each flight that ended early. */
   private def cutShort(set: FlightSet): Vector[String] =
@@ -171,27 +169,12 @@ object SummaryTables:
       val flown = s"${summary.flownS.fixed(1)} of ${summary.flight.duration.toSeconds.brief} s"
       s"${summary.flight.id} was cut short, after $flown: $reason"
 
-  /** A line for each camera that delivered no image. */
-  private def imageless(set: FlightSet): Vector[String] =
-    for
-      summary <- set.all
-      camera  <- summary.imageless
-    yield s"${summary.flight.id}: $camera"
-
   /** A line for each unknown scenario. */
   private def unknown(set: FlightSet): Vector[String] =
     set.all.filter(_.scenario.isEmpty).groupBy(_.flight.nameOfScenario).toVector.sortBy(_._1).map:
       (name, flights) =>
         s"the scenario $name of ${flights.map(_.flight.id).mkString(", ")} is not known to this program: " +
           "its measures, limits and pictures are left out; the program that flew it has them"
-
-  /** A line for each flight that was paused by a user. */
-  private def paused(set: FlightSet): Vector[String] =
-    for
-      summary <- set.all
-      span    <- summary.paused
-    yield s"${summary.flight.id} was paused for ${span.toSeconds.fixed(1)} s: its vehicles hovered and " +
-      "nothing was decided; its times and distances include this, so it is not compared with other flights"
 
   /** A line for each flight whose moves waited for answers: predicting loops gain from sending more of them.
     */

@@ -29,6 +29,12 @@ final case class TextTable(header: Vector[String], rows: Vector[Vector[String]],
     (Vector(line(names), widths.map("─" * _).mkString("  ")) ++ rows.map(line)).mkString("\n")
 
 object TextTable:
+  /** A column's name, and its cell for an item. */
+  type Column[A] = (String, A => String)
+
+  /** A table with a row for each item, whose cells the columns make. */
+  def of[A](items: Iterable[A])(columns: Column[A]*): TextTable =
+    TextTable(columns.map(_._1).toVector, items.map(item => columns.map(_._2(item)).toVector).toVector)
 
   /** Replaces control characters by `�`: names are from files and other machines, and could move a terminal's
     * cursor or colour it.

@@ -67,7 +67,7 @@ final case class Conditions(
       timing <- Conditions
         .timing(kind, Span.ofMillis(periodMs), movesInFlight, vehicle.response)
         .left.map("--loop: " + _)
-      sensor <- eye.fold(Right(None))(SensorFile.read(_).map(Some(_))).left.map("--eye: " + _)
+      sensor <- Expect.optional(eye)(SensorFile.read(_)).left.map("--eye: " + _)
       game = Engagement.of(PaperDuel(altitudeM = altitudeM).fleet, durationS)
     yield Conditions.Resolved(timing, vehicle, game.seeing(Role.Pursuer, sensor))
 

@@ -58,24 +58,16 @@ object LandscapeFigure:
     def edge(x: Double, y: Double) = panel.at(x, y.max(panel.y.from).min(panel.y.to))
     val band                       = points.map((x, tally) => edge(x, tally.mean + tally.sd)) ++
       points.reverse.map((x, tally) => edge(x, tally.mean - tally.sd))
-    def marked(x: Double, stroke: Stroke) =
-      Mark.line(Point(panel.atX(x), panel.top), Point(panel.atX(x), panel.bottom), stroke)
-    val legend = Legend(
-      panel.left,
+    Legend.between(
+      panel,
+      title,
+      (panel.axes :+ Mark.Path(band, None, Some(line.faded(0.25)), closed = true)) ++
+        panel.cut(points.map((x, tally) => (x, tally.mean)), Stroke(line, 2)) ++
+        Vector(panel.upright(landscape.best.head, foundLine), panel.upright(axis.default, defaultLine)),
       Legend.line("mean", Stroke(line, 2)),
       Legend.box("± one standard deviation of the episodes", line.tinted(0.25)),
       Legend.line(s"found, ${landscape.best.head.significant(4)}", foundLine),
       Legend.line(s"default, ${axis.default.significant(4)}", defaultLine)
-    )
-    Drawing(
-      panel.right + 40,
-      panel.bottom + 44,
-      (panel.title(title).moved(0, -22) +: legend.shapes.map(_.moved(0, 22))) ++ panel.axes ++ Vector(
-        Mark.Path(band, None, Some(line.faded(0.25)), closed = true)
-      ) ++ panel.cut(points.map((x, tally) => (x, tally.mean)), Stroke(line, 2)) ++ Vector(
-        marked(landscape.best.head, foundLine),
-        marked(axis.default, defaultLine)
-      )
     )
 
   /** The line of the found candidate: broad and pale below the default's thin line, so that both are visible
@@ -112,11 +104,7 @@ object LandscapeFigure:
     val legend = Legend(
       panel.left,
       Legend.Item("found", 16, at => ring(at.moved(8, 0))),
-      Legend.Item(
-        "default" + (if landscape.space.dimension > 2 then ", the others as found" else ""),
-        8,
-        at => Vector(disc(at.moved(4, 0)))
-      ),
+      Legend.sign("default" + (if landscape.space.dimension > 2 then ", the others as found" else ""))(disc),
       Legend.Item(off, 0, _ => Vector.empty)
     )
     Drawing(

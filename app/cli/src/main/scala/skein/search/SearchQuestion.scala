@@ -43,8 +43,7 @@ final case class SearchQuestion(
         .parse(Role.opponentOf(role), opponent)
         .left
         .map("--opponent: " + _)
-      _ <- Expect.that(fresh.forall(count => count >= 2 && count <= SearchQuestion.MostEpisode)):
-        s"--fresh: expected 2 to ${SearchQuestion.MostEpisode}, got ${fresh.getOrElse(0)}"
+      _      <- Expect.optional(fresh)(Expect.within("--fresh", _, 2, SearchQuestion.MostEpisode))
       method <- SearchQuestion.method(method, candidates, episodes, population, family.space.dimension)
     yield
       val searched = SearchedFamily(this, family, role, flown.game, opponent)
@@ -69,8 +68,7 @@ object SearchQuestion:
   ): Either[String, SearchMethod] =
     for
       _ <- Expect.that(candidates >= 4)(s"--candidates: expected 4 or more, got $candidates")
-      _ <- Expect.that(episodes >= 1 && episodes <= MostEpisode):
-        s"--episodes: expected 1 to $MostEpisode, got $episodes"
+      _ <- Expect.within("--episodes", episodes, 1, MostEpisode)
       _ <- Expect.that(population >= 4 && population <= candidates):
         s"--population: expected 4 to the number of candidates, $candidates, got $population"
       generations = (candidates / population).max(1)

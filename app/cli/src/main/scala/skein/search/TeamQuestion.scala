@@ -65,7 +65,7 @@ final case class TeamQuestion(
         Expect.each(
           space.grid(2)
         )(corner => ScenarioSettings.ofKeys(kind, settings(set, space, corner))).left.map("--vary: " + _)
-      _  <- Expect.that(fresh >= 2 && fresh <= MostFresh)(s"--fresh: expected 2 to $MostFresh, got $fresh")
+      _  <- Expect.within("--fresh", fresh, 2, MostFresh)
       by <- Objective.ofScenario(objective, plain).left.map("--objective: " + _)
       // A measure's name may contain a setting's value.
       _      <- Expect.each(corners)(Objective.ofScenario(objective, _)).left.map("--objective, --vary: " + _)

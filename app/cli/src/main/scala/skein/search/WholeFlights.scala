@@ -32,11 +32,21 @@ final class WholeFlights private (
     * @return Left says why the episode could not be completed
     */
   def value(scenario: Scenario, objective: Objective, episode: Int): Either[String, Double] =
+    sum(scenario, objective, episode).map(_.getOrElse(objective.direction.sign * WholeFlights.Never))
+
+  /** The weighted sum of an episode's measures; None if one has no value. A time that is never reached counts
+    * as the duration, as in [[ScenarioTerm.value]].
+    *
+    * @return Left says why the episode could not be completed
+    */
+  def sum(scenario: Scenario, objective: Objective, episode: Int): Either[String, Option[Double]] =
     val measures = scenario.measures.map(measure => measure.name -> measure).toMap
-    val terms    = objective.measures.map((weight, measure) => (weight, measures(measure.name)))
-    fly(scenario, episode).map(
-      WholeFlights.sum(terms, _, durationS).getOrElse(objective.direction.sign * WholeFlights.Never)
-    )
+    fly(scenario, episode).map: flown =>
+      val values = objective.measures.flatMap: (weight, named) =>
+        val measure = measures(named.name)
+        val never   = Option.when(measure.reduced.exists(_.reduction.mayBeNever))(durationS)
+        measure.of(flown).orElse(never).map(weight * _)
+      Option.when(values.size == objective.measures.size)(values.sum)
 
   /** Number of episodes per second, for people. Simulates two to measure it. */
   def rate(scenario: Scenario, objective: Objective, threads: Int): String =
@@ -55,15 +65,6 @@ object WholeFlights:
     * further from the paused loop's, than that of any episode that does.
     */
   val Never = 1e6
-
-  /** @return the weighted sum of a flight's measures; None if one has no value. A time that is never reached
-    *   counts as the duration, as in [[ScenarioTerm.value]].
-    */
-  def sum(terms: Vector[(Double, Measure)], flown: Tracks, durationS: Double): Option[Double] =
-    val values = terms.flatMap: (weight, measure) =>
-      val never = Option.when(measure.reduced.exists(_.reduction.mayBeNever))(durationS)
-      measure.of(flown).orElse(never).map(weight * _)
-    Option.when(values.size == terms.size)(values.sum)
 
   /** Maximum number of flights in virtual time in one search: a day of them, at one a second. */
   val MostVirtual = 100_000
@@ -86,10 +87,10 @@ object WholeFlights:
     *
     * @return Left says why it cannot be simulated, or that not all vehicles were observed
     */
-  def forward(timing: LoopTiming, link: Delays, response: VelocityResponse, durationS: Double, seed: Long)(
+  private def simulate(conditions: Conditions.Resolved, link: Delays, seed: Long)(
       scenario: Scenario,
       episode: Int
-  ): Either[String, Tracks] = engagement(scenario, durationS).flatMap: flown =>
+  ): Either[String, Tracks] = engagement(scenario, conditions.game.durationS).flatMap: flown =>
     val agents  = scenario.agents
     val samples = agents.map(agent =>
       Vector.newBuilder[(Instant, Vector3)] += ((Instant.ofNanos(0), agent.startPositionNed))
@@ -100,7 +101,12 @@ object WholeFlights:
           Instant.ofNanos(0) + Span.ofSeconds(timeS),
           Vector3(x, y, z)
         )): Unit
-    Rollout(flown, timing, link, response).fly(WorldRandom.key(seed, 0, episode), observer = observer): Unit
+    Rollout(
+      flown,
+      conditions.timing,
+      link,
+      conditions.vehicle.response
+    ).fly(WorldRandom.key(seed, 0, episode), observer = observer): Unit
     Tracks
       .of(agents.zip(samples).map((agent, places) =>
         Track.ofPositions(agent.name, agent.role.name, places.result())
@@ -111,7 +117,7 @@ object WholeFlights:
     *
     * @return Left says why it could not be completed
     */
-  def virtual(conditions: Conditions, loop: LoopKind, link: LatencyProfile, seed: Long)(
+  private def run(conditions: Conditions, loop: LoopKind, link: LatencyProfile, seed: Long)(
       scenario: Scenario,
       episode: Int
   ): Either[String, Tracks] =
@@ -141,7 +147,7 @@ object WholeFlights:
       Effort.OfScalarFlights,
       blockEpisodes = 64,
       flown.game.durationS,
-      forward(flown.timing, link, flown.vehicle.response, flown.game.durationS, seed)
+      simulate(flown, link, seed)
     )
 
   /** Why a scenario needs whole flights, world by world; None if its quantities suffice. */
@@ -181,9 +187,10 @@ object WholeFlights:
       case Some(reason) if isTold => Left(s"--plant: expected $Tilt or $Spatial, got $plant: $reason")
       case Some(_)                => Right(if flown.isTraced then Tilt else Spatial)
 
-  /** @param why the reason for which no faster engine can be used */
-  def inVirtualTime(why: String): Engine = Engine(Engine.Kind.Flights, s"flights in virtual time: $why")
-
+  /** Episodes in virtual time.
+    *
+    * @param reason no faster engine can be used
+    */
   def virtual(
       conditions: Conditions,
       loop: LoopKind,
@@ -193,11 +200,11 @@ object WholeFlights:
   ): WholeFlights = WholeFlights(
     SimulatorsQuadrotor,
     "simulator",
-    inVirtualTime(reason),
+    Engine(Engine.Kind.Flights, s"flights in virtual time: $reason"),
     Effort.OfFlights,
     blockEpisodes = 4,
     conditions.durationS,
-    virtual(conditions, loop, link, seed)
+    run(conditions, loop, link, seed)
   )
 
   /** The message that virtual flights take no plant.
@@ -208,7 +215,7 @@ object WholeFlights:
     s"--plant: expected none, since this scenario flies in virtual time by $SimulatorsQuadrotor: $reason"
 
   /** The vehicle model of virtual flights, for people. */
-  val SimulatorsQuadrotor = "the simulator's quadrotor"
+  private val SimulatorsQuadrotor = "the simulator's quadrotor"
 
 /** Evaluates candidates by whole flights.
   *

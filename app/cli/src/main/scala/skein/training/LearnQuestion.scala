@@ -60,13 +60,13 @@ final case class LearnQuestion(
       _ <- conditions.eye.map(_ => "--eye: expected with search or budget; learners know no eyes").toLeft(())
       flown  <- conditions.resolved
       delays <- flown.delays(link, game.scenario.agents.size).left.map("--link: " + _)
-      _      <- whole("--steps", steps, 1, MostSteps)
-      _      <- whole("--environments", environments, 1, MostEnvironments)
+      _      <- Expect.within("--steps", steps, 1, MostSteps)
+      _      <- Expect.within("--environments", environments, 1, MostEnvironments)
       _      <- within("--lesson", lessonS, 1, 3600, " s")
       _      <- within("--turn-rate", turnRateRadPerS, 1e-3, 50, " rad/s")
       _      <- within("--climb", climbMps, 0, EnvironmentSettings.MostClimbMps, " m/s")
-      _      <- whole("--episodes", episodes, 2, MostEpisodes)
-      _      <- whole("--fresh", fresh, 2, MostEpisodes)
+      _      <- Expect.within("--episodes", episodes, 2, MostEpisodes)
+      _      <- Expect.within("--fresh", fresh, 2, MostEpisodes)
       _      <- learner.mistake.map(asOption).toLeft(())
       _      <- Expect.that(algorithm != Algorithm.Ppo || learner.batch <= learner.horizon * environments):
         "--batch: expected at most the " +
@@ -108,9 +108,6 @@ object LearnQuestion:
     Expect.that(value >= least && value <= most):
       s"$option: expected ${least.significant(4)} to " +
         s"${most.significant(4)}$unit, got ${value.significant(4)}$unit"
-
-  private def whole(option: String, value: Long, least: Long, most: Long): Either[String, Unit] =
-    Expect.that(value >= least && value <= most)(s"$option: expected $least to $most, got $value")
 
   /** Renames a mistake's subject to its option: `learning rate: …` becomes `--learning-rate: …`. */
   private def asOption(mistake: String) =

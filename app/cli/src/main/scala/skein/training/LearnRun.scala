@@ -13,9 +13,7 @@ import skein.units.OwnFailure
   *
   * @param failure why it ended early, unless it was stopped
   */
-final case class Learned(state: LearnState, failure: Option[String]):
-
-  def unfailing: Either[String, LearnState] = failure.toLeft(state)
+final case class Learned(state: LearnState, failure: Option[String])
 
 /** Learns round by round, evaluates the policy from time to time, and keeps its state on disk.
   *

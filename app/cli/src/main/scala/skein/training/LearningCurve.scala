@@ -45,17 +45,11 @@ object LearningCurve:
         panel.curve(several.map(score => (score.steps / 1e3, score.mean)), stroke)
     val lines = levels.zip(strokes.drop(scores.size)).map:
       case ((_, _, level), stroke) => panel.level(level, stroke)
-    val legend = Legend(
-      panel.left,
+    Legend.between(
+      panel,
+      title,
+      panel.axes ++ bands ++ lines ++ curves,
       (scores.map(_._1) ++ levels.map(_._1)).zip(strokes).map(Legend.line(_, _))*
-    )
-    Drawing(
-      panel.right + 40,
-      panel.bottom + 44,
-      (panel.title(title).moved(
-        0,
-        -22
-      ) +: legend.shapes.map(_.moved(0, 22))) ++ panel.axes ++ bands ++ lines ++ curves
     )
 
   val learned: Colour = Colour(0x0072b2)

@@ -56,17 +56,13 @@ class BudgetSuite extends munit.FunSuite, Optimised:
   test("a cancelled map has the rows simulated until then, and without any there is no map"):
     assertEquals(sweep("stream", 5).map(_ => (), () => true), Left(BudgetSubject.Stopped))
     val whole       = map(sweep("stream", 5))
+    val ofTwoRows   = 5L * whole.cells.take(2).flatten.flatten.size
     var isCancelled = false
-    val cut         = sweep("stream", 5).map(_ => (), () => isCancelled, rows => isCancelled = rows.size == 2)
+    val cut         = sweep("stream", 5).map(done => isCancelled = done >= ofTwoRows, () => isCancelled)
     assertEquals(cut, Right(whole.copy(jittersMs = whole.jittersMs.take(2), cells = whole.cells.take(2))))
 
   private def shown(bound: Vector[Double], legs: Legs = Legs.RoundTrip) = BudgetMap(
-    "stream",
-    100,
-    "last10s",
-    "m",
-    "ideal",
-    "paper-pursuer",
+    BudgetTask("stream", 100, 60, "ideal", "paper-pursuer", "last10s", "m"),
     Engine(Engine.Kind.Lanes, "SIMD"),
     Tolerance.Share(0.05),
     1,

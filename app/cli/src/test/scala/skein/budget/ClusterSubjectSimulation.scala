@@ -48,7 +48,11 @@ class ClusterSubjectSimulation extends munit.FunSuite, Optimised:
         assertEquals(works.size, links.size)
         Future.successful(Right(Some(works.reverse.map(solver.solve).reverse)))
     for (one, number) <- here.zipWithIndex do
-      assertEquals(tallies(ClusterSubject(one, number, elsewhere, () => 1, Some(4))), tallies(one), one.label)
+      assertEquals(
+        tallies(ClusterSubject(one, number, elsewhere, () => 1, Some(4))),
+        tallies(one),
+        one.task.label
+      )
 
   test("a worker whose result differs from the question's probe refuses the question"):
     val other = String(question.toArray, "UTF-8").replaceAll("\"seed\":\"?3\"?", "\"seed\":4")

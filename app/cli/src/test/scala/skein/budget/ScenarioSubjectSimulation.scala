@@ -31,7 +31,7 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
   test("a measure of a quantity equals that computed from the whole flight's tracks"):
     val plain = subject(surround)
     assert(plain.engine(Vector(LatencyDistribution.Vpn)).text.startsWith("SIMD, "))
-    assertEquals((plain.formula, plain.unit), ("off-ring", "m"))
+    assertEquals((plain.task.formula, plain.task.unit), ("off-ring", "m"))
     val both   = subject(Whole(), Some("off-ring + 0*lasts"))
     val scalar = both.engine(Vector.empty).text
     assertEquals(

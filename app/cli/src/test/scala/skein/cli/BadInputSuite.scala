@@ -12,7 +12,7 @@ import skein.testing.{TemporaryFolders, Unhurried}
 class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = PaperReport.scenarios
 
-  private def assertRefused(command: Command, arguments: Seq[String], expected: String)(using
+  private def assertRefused(command: Command[?], arguments: Seq[String], expected: String)(using
       munit.Location
   ): Unit =
     val ran = Ran.of(command.run(arguments))

@@ -4,10 +4,11 @@ import java.nio.file.Path
 import mainargs.ParserForClass
 import scala.collection.immutable.ArraySeq
 import skein.blocks.Coordinator
-import skein.cluster.{ClusterProgress, Endpoint, Tls}
+import skein.cluster.{ClusterProgress, Tls}
+import skein.link.Address
 
 class ClusterRunSuite extends munit.FunSuite:
-  private val at = Endpoint("coordinator.lab", 25520)
+  private val at = Address("coordinator.lab", 25520)
 
   private def options(tls: Option[Tls]) = ClusterOptions.Checked(workers = 2, at, block = None, tls)
 
@@ -21,7 +22,7 @@ class ClusterRunSuite extends munit.FunSuite:
     val told   = read(ClusterRun.words(options(Some(tls)), at, threads = 4))
     assertEquals((told.join, told.threads), ("coordinator.lab:25520", Some(2)))
     assertEquals((told.tls, told.listen), (Some(folder.toString), Some("coordinator.lab:0")))
-    val plain = read(ClusterRun.words(options(None), Endpoint("127.0.0.1", 25520), threads = 4))
+    val plain = read(ClusterRun.words(options(None), Address("127.0.0.1", 25520), threads = 4))
     assertEquals((plain.tls, plain.listen), (None, None))
 
   test("while another worker is here, the end of this machine's workers ends nothing"):

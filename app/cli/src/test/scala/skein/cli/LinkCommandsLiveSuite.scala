@@ -18,7 +18,7 @@ class LinkCommandsLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   override def afterAll(): Unit = system.terminate(): Unit
 
   /** Exit status, standard output, standard error. */
-  private def run(command: Command, arguments: String*): (Int, String, String) =
+  private def run(command: Command[?], arguments: String*): (Int, String, String) =
     val ran = Ran.of(command.run(arguments))
     (ran.status, ran.out, ran.err)
 

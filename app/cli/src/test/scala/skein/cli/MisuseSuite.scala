@@ -7,7 +7,7 @@ class MisuseSuite extends munit.FunSuite:
   private given Scenarios = PaperReport.scenarios
 
   /** Exit status and the output before the hint at `--help`. */
-  private def misused(command: Command, arguments: String*): (Int, Seq[String]) =
+  private def misused(command: Command[?], arguments: String*): (Int, Seq[String]) =
     val ran = Ran.of(command.run(arguments))
     (ran.status, ran.err.linesIterator.toSeq.dropRight(1))
 

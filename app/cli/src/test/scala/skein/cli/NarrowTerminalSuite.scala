@@ -13,6 +13,6 @@ class NarrowTerminalSuite extends munit.FunSuite:
 
   for columns <- Seq(60, 80, 100) do
     test(s"no help text wraps on $columns columns"):
-      for case command: OptionsCommand[?] <- Main.commands do
+      for command <- Main.commands do
         val widest = command.help(columns).linesIterator.maxBy(_.length)
         assert(widest.length <= columns, s"${command.name}: ${widest.length} columns: '$widest'")

@@ -2,10 +2,10 @@ package skein.cli
 
 /** Compares the options of all commands: a word has one meaning in all of them. */
 class OptionsAgreeSuite extends munit.FunSuite:
-  private val options: Seq[(Command, CommandOption)] =
+  private val options: Seq[(Command[?], CommandOption)] =
     for command <- Main.commands; option <- command.options yield (command, option)
 
-  private def having(flag: String): Seq[(Command, CommandOption)] = options.filter(_._2.flag == flag)
+  private def having(flag: String): Seq[(Command[?], CommandOption)] = options.filter(_._2.flag == flag)
 
   test("an option takes a value either in every command or in none, and has a description"):
     for (flag, same) <- options.groupBy(_._2.flag) do

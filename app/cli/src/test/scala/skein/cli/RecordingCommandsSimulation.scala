@@ -40,7 +40,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assert(recorder.writeTo(file).isRight)
 
   /** Exit status, standard output and error output. */
-  private def run(command: Command, arguments: String*): (Int, String, String) =
+  private def run(command: Command[?], arguments: String*): (Int, String, String) =
     val ran = Ran.of(command.run(arguments))
     (ran.status, ran.out, ran.err)
 

@@ -35,6 +35,13 @@ class SparseFiguresSuite extends munit.FunSuite:
     val upright = figure.shapes.collect { case text: Mark.Text if text.upwards => text.content }
     assertEquals(upright.filterNot(_.startsWith("mean ")).toSet, Set("distance, m", "sequential"))
 
+  test("the observations of few loops fill the figure's width: the legend takes rows"):
+    val figure = ObservationFigure(Report.of(Seq("sequential", "stream").map(
+      SyntheticFlight(_, "vpn", seed = 2, 60)
+    ))).get
+    val lines = figure.shapes.collect { case path: Mark.Path => path.points.map(_.x).max }
+    assert(clue(lines.max) > 0.85 * clue(figure.width))
+
   test("the labels of neighbouring columns' arrows do not overlap"):
     val loops   = Seq("sequential", "futures", "stream")
     val flights = Report.of(loops.map(SyntheticFlight(_, "vpn", seed = 2, 60)))

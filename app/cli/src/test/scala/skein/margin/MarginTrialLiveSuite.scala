@@ -19,16 +19,16 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
 
   /** The run of a script, and its output. */
   private def run(script: String, seconds: Double, isStopped: Boolean = false) =
-    MarginTrial(
+    val task = MarginTask(
       Seq("bash", "-c", script),
       WorldSettings.of(vehicles),
       Scene.Empty,
       Some(duel),
       MarginJudge.Contacts,
       Span.ofSeconds(seconds),
-      Span.Zero,
-      Clock.system
-    ).run(LatencyProfile.none, 1, () => isStopped).fold(fail(_), identity)
+      Span.Zero
+    )
+    MarginTrial(task, Clock.system).run(LatencyProfile.none, 1, () => isStopped).fold(fail(_), identity)
 
   private def why(run: MarginRun) = run.value.left.toOption.map(_.why)
 
@@ -61,15 +61,14 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
     assert(told.startsWith("it ended with exit status 3 after ") && told.endsWith("no battery"), told)
 
   test("a missing program is reported in a line"):
-    val trial = MarginTrial(
+    val task = MarginTask(
       Seq("no-such-program"),
       WorldSettings.Default,
       Scene.Empty,
       None,
       MarginJudge.Printed,
       Span.ofSeconds(1),
-      Span.Zero,
-      Clock.system
+      Span.Zero
     )
-    val told = trial.run(LatencyProfile.none, 1, () => false).left.toOption
+    val told = MarginTrial(task, Clock.system).run(LatencyProfile.none, 1, () => false).left.toOption
     assert(told.exists(_.startsWith("cannot start no-such-program")), told)

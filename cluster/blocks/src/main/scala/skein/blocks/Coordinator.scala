@@ -69,43 +69,27 @@ final case class Coordinator private (
 
   /** Handles a worker's answer.
     *
-    * @return whether it is the first one for its block, which counts
+    * @return the block, if this is its first answer, which counts
     */
-  def answered(worker: String, number: Long, busyNanos: Long): (Coordinator, AnswerKind) =
-    def tallied(record: WorkerRecord, accepted: Int) = record.copy(
+  def answered(worker: String, number: Long, busyNanos: Long): (Coordinator, Option[Block]) =
+    val lease = leases.get(number)
+    // If its lease was dropped, a block waits, and its answer may arrive nevertheless.
+    val block    = lease.map(_.block).orElse(waiting.again.get(number))
+    val accepted = if block.isDefined then 1 else 0
+    val freed    = lease.fold(copy(waiting = waiting.without(number))): held =>
+      held.holders.keys.foldLeft(without(held))(_.forgotten(_, Set(number)))
+    val record = freed.workers.getOrElse(worker, WorkerRecord(0, isHere = false))
+    val told   = record.copy(
       holds = record.holds - number,
       accepted = record.accepted + accepted,
       repeated = record.repeated + 1 - accepted,
       busyNanos = record.busyNanos + busyNanos
     )
-    val known = workers.getOrElse(worker, WorkerRecord(0, isHere = false))
-    leases.get(number) match
-      case Some(lease) =>
-        val freed = lease.holders.keys.foldLeft(workers): (all, holder) =>
-          all.updatedWith(holder)(_.map(record => record.copy(holds = record.holds - number)))
-        val next = copy(
-          leases = leases - number,
-          seldom = seldom - lease.place,
-          workers = freed.updated(worker, tallied(freed.getOrElse(worker, known), 1)),
-          counts = counts.copy(accepted = counts.accepted + 1)
-        )
-        (next, AnswerKind.First(lease.block))
-      case None =>
-        waiting.again.get(number) match
-          // Its lease was dropped, and the answer arrived nevertheless.
-          case Some(block) =>
-            val next = copy(
-              waiting = waiting.without(number),
-              workers = workers.updated(worker, tallied(known, 1)),
-              counts = counts.copy(accepted = counts.accepted + 1)
-            )
-            (next, AnswerKind.First(block))
-          case None =>
-            val next = copy(
-              workers = workers.updated(worker, tallied(known, 0)),
-              counts = counts.copy(repeated = counts.repeated + 1)
-            )
-            (next, AnswerKind.Repeated)
+    val next = freed.copy(
+      workers = freed.workers.updated(worker, told),
+      counts = counts.copy(accepted = counts.accepted + accepted, repeated = counts.repeated + 1 - accepted)
+    )
+    (next, block)
 
   /** Returns overdue blocks to the waiting ones; their workers may still answer. */
   def at(nowNanos: Long): Coordinator =
@@ -115,15 +99,8 @@ final case class Coordinator private (
       if seldom.isEmpty then leases.valuesIterator.filter(isOverdue).toVector
       else seldom.iterator.map((_, number) => leases(number)).takeWhile(isOverdue).toVector
     overdue.foldLeft(this): (here, lease) =>
-      val number = lease.block.number
-      lease.holders.keys.foldLeft(
-        here.copy(
-          waiting = here.waiting.returned(lease.block),
-          leases = here.leases - number,
-          seldom = here.seldom - lease.place,
-          counts = here.counts.copy(overdue = here.counts.overdue + 1)
-        )
-      )(_.forgotten(_, Set(number)))
+      val waits = here.returned(lease, here.counts.copy(overdue = here.counts.overdue + 1))
+      lease.holders.keys.foldLeft(waits)(_.forgotten(_, Set(lease.block.number)))
 
   /** Drops all blocks; answers that still arrive are repeats. */
   def cancelled: Coordinator = copy(
@@ -159,6 +136,12 @@ final case class Coordinator private (
       )
     )
 
+  private def without(lease: Lease): Coordinator =
+    copy(leases = leases - lease.block.number, seldom = seldom - lease.place)
+
+  private def returned(lease: Lease, counted: Counts): Coordinator =
+    without(lease).copy(waiting = waiting.returned(lease.block), counts = counted)
+
   /** Removes blocks from the record of what a worker holds. */
   private def forgotten(worker: String, numbers: Set[Long]): Coordinator =
     copy(workers = workers.updatedWith(worker)(_.map(record => record.copy(holds = record.holds -- numbers))))
@@ -168,13 +151,7 @@ final case class Coordinator private (
     held.keys.toVector.sorted.foldRight(this): (number, here) =>
       here.leases.get(number).filter(_.holders.contains(worker)).fold(here): lease =>
         val left = lease.copy(holders = lease.holders - worker)
-        if left.holders.isEmpty then
-          here.copy(
-            waiting = here.waiting.returned(lease.block),
-            leases = here.leases - number,
-            seldom = here.seldom - lease.place,
-            counts = here.counts.copy(lost = here.counts.lost + 1)
-          )
+        if left.holders.isEmpty then here.returned(lease, here.counts.copy(lost = here.counts.lost + 1))
         else here.copy(leases = here.leases.updated(number, left), seldom = here.seldom + left.place)
 
 object Coordinator:
@@ -226,9 +203,3 @@ final case class WorkerRecord(
     repeated: Long = 0,
     busyNanos: Long = 0
 )
-
-/** Whether an answer is the first, a repeat, or unknown. */
-enum AnswerKind:
-  case First(block: Block)
-
-  case Repeated

@@ -153,7 +153,7 @@ object Ledger:
       else
         val content = read(channel, at + Head, length)
         val key     = ByteBuffer.wrap(content)
-        Some((Option.when(crcOf(content) == crc)(BlockKey(key.getLong, key.getLong)), length))
+        Some((Option.when(crcOf(content, 0, length) == crc)(BlockKey(key.getLong, key.getLong)), length))
 
   private def isWhole(channel: FileChannel, at: Long, size: Long) =
     recordAt(channel, at, size).exists(_._1.isDefined)
@@ -184,9 +184,7 @@ object Ledger:
       val length = bytes.getInt(at)
       left > 0 && isLength(length, bytes.capacity.toLong - at - Head) && {
         left -= length
-        val crc = CRC32()
-        crc.update(bytes.array, at + Head, length)
-        crc.getValue.toInt == bytes.getInt(at + 4)
+        crcOf(bytes.array, at + Head, length) == bytes.getInt(at + 4)
       }
 
   private def record(key: BlockKey, answer: ArraySeq[Byte]): ByteBuffer =
@@ -195,13 +193,13 @@ object Ledger:
     ByteBuffer
       .allocate(Head + content.capacity)
       .putInt(content.capacity)
-      .putInt(crcOf(content.array))
+      .putInt(crcOf(content.array, 0, content.capacity))
       .put(content.array)
       .flip()
 
-  private def crcOf(bytes: Array[Byte]): Int =
+  private def crcOf(bytes: Array[Byte], from: Int, length: Int): Int =
     val crc = CRC32()
-    crc.update(bytes)
+    crc.update(bytes, from, length)
     crc.getValue.toInt
 
   private def read(channel: FileChannel, at: Long, length: Int): Array[Byte] =

@@ -155,14 +155,12 @@ final class CoordinatorSimulation(
 
   private def answered(worker: String, number: Long, answer: ArraySeq[Byte], took: Long): Unit =
     deciding:
-      val (next, what) = state.answered(worker, number, took)
+      val (next, first) = state.answered(worker, number, took)
       state = next
-      what match
-        case AnswerKind.First(block) =>
-          if !ledger.accept(block.key, answer) then acceptedTwice += 1
-          answers.update(block.key, answer)
-          usefulNanos += took
-        case AnswerKind.Repeated => ()
+      first.foreach: block =>
+        if !ledger.accept(block.key, answer) then acceptedTwice += 1
+        answers.update(block.key, answer)
+        usefulNanos += took
 
   private val all                                                   = mutable.LinkedHashSet.empty[Worker]
   private var born                                                  = 0

@@ -28,7 +28,7 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     val (d, first)  = c.answered("ben", 0, 10)
     val (e, second) = d.answered("anna", 0, 10)
     assertEquals(again, Some(0L))
-    assertEquals((first, second), (AnswerKind.First(blocks(1).head), AnswerKind.Repeated))
+    assertEquals((first, second), (Some(blocks(1).head), None))
     assertEquals(e.counts, Coordinator.Counts(accepted = 1, repeated = 1, doubled = 1, lost = 0, overdue = 0))
     assertEquals((e.workers("ben").accepted, e.workers("anna").repeated), (1L, 1L))
 
@@ -60,7 +60,7 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     val (held, _)       = take(two.offered(blocks(2)), "anna")
     val (first, one)    = held.answered("carl", 0, 10)
     val (again, second) = first.answered("dora", 0, 20)
-    assertEquals((one, second), (AnswerKind.First(blocks(1).head), AnswerKind.Repeated))
+    assertEquals((one, second), (Some(blocks(1).head), None))
     assertEquals((again.counts.accepted, again.counts.repeated), (1L, 1L))
     for (name, accepted, busy) <- Seq(("carl", 1L, 10L), ("dora", 0L, 20L)) do
       val record = again.workers(name)
@@ -101,7 +101,7 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
         (1L, Seq(0L), 0)
       )
       val (done, answer) = late.answered("anna", 0, 1)
-      assertEquals(answer, AnswerKind.First(blocks(1).head))
+      assertEquals(answer, Some(blocks(1).head))
       assertEquals((done.counts.accepted, done.counts.repeated), (1L, 0L))
       val by = done.workers("anna")
       assertEquals((by.accepted, by.repeated, by.busyNanos), (1L, 0L, 1L))
@@ -111,7 +111,7 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     val (a, _)    = take(two.offered(blocks(2)), "anna")
     val cancelled = a.cancelled
     assert(cancelled.isIdle)
-    assertEquals(cancelled.answered("anna", 0, 1)._2, AnswerKind.Repeated)
+    assertEquals(cancelled.answered("anna", 0, 1)._2, None)
 
   /** Runs a simulation to its end, and checks its result and ledger. */
   private def assertRight(flown: CoordinatorSimulation, blocks: Int, clue: String): Unit =

@@ -8,7 +8,7 @@ import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
 import scala.concurrent.Promise
 import scala.concurrent.duration.DurationInt
-import skein.blocks.{AnswerKind, Block, BlockKey, Coordinator, Ledger}
+import skein.blocks.{Block, BlockKey, Coordinator, Ledger}
 
 /** A coordinator's question.
   *
@@ -120,17 +120,15 @@ private[cluster] final class CoordinatorBehavior private (
       for worker <- hungry do serve(worker, state.workers(worker).holds.keySet)
 
   private def answered(worker: String, number: Long, busyNanos: Long, answer: ArraySeq[Byte]): Unit =
-    val (after, what) = state.answered(worker, number, busyNanos)
+    val (after, first) = state.answered(worker, number, busyNanos)
     state = after
-    what match
-      case AnswerKind.Repeated     => ()
-      case AnswerKind.First(block) =>
-        keep(block.key, answer) match
-          case Left(mistake) => ended(Left(mistake))
-          case Right(())     =>
-            call.foreach: open =>
-              open.take(block.key, answer)
-              if open.isDone then ended(Right(Some(open.all)))
+    first.foreach: block =>
+      keep(block.key, answer) match
+        case Left(mistake) => ended(Left(mistake))
+        case Right(())     =>
+          call.foreach: open =>
+            open.take(block.key, answer)
+            if open.isDone then ended(Right(Some(open.all)))
 
   private def keep(key: BlockKey, answer: ArraySeq[Byte]): Either[String, Unit] =
     try

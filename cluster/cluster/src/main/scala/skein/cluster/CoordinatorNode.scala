@@ -6,7 +6,7 @@ import java.util.concurrent.{CompletableFuture, TimeUnit}
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.{ActorRef, Behavior}
-import org.apache.pekko.actor.{ActorSystem, Address, ExtendedActorSystem}
+import org.apache.pekko.actor.{ActorSystem, Address as NodeAddress, ExtendedActorSystem}
 import org.apache.pekko.cluster.ClusterEvent.{
   MemberEvent,
   MemberRemoved,
@@ -20,6 +20,7 @@ import scala.concurrent.ExecutionContext.parasitic
 import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 import scala.util.control.NonFatal
 import skein.blocks.Ledger
+import skein.link.Address
 
 /** The process that assigns blocks and stores their answers. */
 final class CoordinatorNode private (
@@ -29,9 +30,9 @@ final class CoordinatorNode private (
 ):
   import CoordinatorNode.MostClosing
 
-  val address: Endpoint =
+  val address: Address =
     val own = CoordinatorNode.addressOf(system)
-    Endpoint(own.host.get.stripPrefix("[").stripSuffix("]"), own.port.get)
+    Address(own.host.get.stripPrefix("[").stripSuffix("]"), own.port.get)
 
   def progress: ClusterProgress = latest.get
 
@@ -83,7 +84,7 @@ object CoordinatorNode:
     * @return Left says why it cannot listen
     */
   def start(
-      listen: Endpoint,
+      listen: Address,
       tls: Option[Tls],
       question: ArraySeq[Byte],
       ledger: Ledger,
@@ -110,7 +111,7 @@ object CoordinatorNode:
       manager ! Join(addressOf(system))
       CoordinatorNode(system, actor, latest)
 
-  private[cluster] def addressOf(system: ActorSystem): Address =
+  private[cluster] def addressOf(system: ActorSystem): NodeAddress =
     system.asInstanceOf[ExtendedActorSystem].provider.getDefaultAddress
 
   private def reason(failed: Throwable): String =

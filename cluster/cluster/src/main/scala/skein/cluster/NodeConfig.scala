@@ -1,6 +1,7 @@
 package skein.cluster
 
 import com.typesafe.config.{Config, ConfigFactory, ConfigUtil}
+import skein.link.Address
 
 /** Makes the Pekko configuration of a node. */
 private[cluster] object NodeConfig:
@@ -11,7 +12,7 @@ private[cluster] object NodeConfig:
   /** @param listen the endpoint to listen at; port 0 for any that is free
     * @param joins the endpoint to which it connects
     */
-  def of(listen: Endpoint, tls: Option[Tls], joins: Option[Endpoint] = None): Either[String, Config] =
+  def of(listen: Address, tls: Option[Tls], joins: Option[Address] = None): Either[String, Config] =
     for
       _ <- (listen +: joins.toSeq).find(!_.isLoopback && tls.isEmpty).toLeft(()).left.map(beyond =>
         s"expected certificates of both sides (--tls FOLDER) where ${beyond.host} is " +
@@ -35,7 +36,7 @@ private[cluster] object NodeConfig:
     }
   """
 
-  private def common(listen: Endpoint) = s"""
+  private def common(listen: Address) = s"""
     pekko {
       loglevel = "ERROR"
       stdout-loglevel = "OFF"

@@ -63,7 +63,7 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
   /** The reason why no trusted connection to that endpoint can be made; None if certificates are not the
     * reason. Takes at most two seconds for each direction.
     */
-  private[cluster] def refusal(at: Endpoint): Option[String] =
+  private[cluster] def refusal(at: Address): Option[String] =
     context.toOption.flatMap: made =>
       val tried = Using(made.getSocketFactory.createSocket().asInstanceOf[SSLSocket]): socket =>
         val parameters = socket.getSSLParameters
@@ -75,7 +75,7 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
         // In TLS 1.3 the peer verifies after the handshake has ended here.
         socket.getInputStream.read()
       tried.failed.toOption.collect:
-        case reason: SSLException => TransportError.NotTrusted(Address(at.host, at.port), reason).getMessage
+        case reason: SSLException => TransportError.NotTrusted(at, reason).getMessage
 
   private[cluster] def config: Config =
     def quoted(text: Any) = ConfigUtil.quoteString(text.toString)

@@ -6,7 +6,7 @@ import java.util.concurrent.{ExecutorService, Executors, TimeUnit, TimeoutExcept
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.{ActorRef, ActorRefResolver, Behavior}
-import org.apache.pekko.actor.{ActorSystem, Address}
+import org.apache.pekko.actor.{ActorSystem, Address as NodeAddress}
 import org.apache.pekko.cluster.ClusterEvent.{
   MemberEvent,
   MemberRemoved,
@@ -19,7 +19,7 @@ import scala.concurrent.{Await, Promise}
 import scala.util.Try
 import scala.util.control.NonFatal
 import skein.cluster.WorkerBehavior.End
-import skein.link.TlsProbe
+import skein.link.{Address, TlsProbe}
 
 /** A process that computes blocks.
   *
@@ -27,8 +27,8 @@ import skein.link.TlsProbe
   * @param tell called with progress, in lines for the user
   */
 final class WorkerNode(
-    coordinator: Endpoint,
-    listen: Endpoint,
+    coordinator: Address,
+    listen: Address,
     tls: Option[Tls],
     cores: Int,
     solvers: BlockSolverFactory,
@@ -89,7 +89,7 @@ final class WorkerNode(
   private def refusal: Option[String] = tls match
     case Some(own) => own.refusal(coordinator)
     case None      =>
-      Option.when(TlsProbe.answers(skein.link.Address(coordinator.host, coordinator.port))):
+      Option.when(TlsProbe.answers(coordinator)):
         "who listens there asks for certificates: expected --tls FOLDER with this machine's"
 
   private def once(config: Config, self: WorkerBehavior.Self, pool: ExecutorService): End =
@@ -99,7 +99,7 @@ final class WorkerNode(
     if stopped then promise.trySuccess(End.Finished): Unit
     val system = ActorSystem(NodeConfig.System, config)
     try
-      val seed = Address("pekko", NodeConfig.System, coordinator.uriHost, coordinator.port)
+      val seed = NodeAddress("pekko", NodeConfig.System, coordinator.uriHost, coordinator.port)
       system.whenTerminated.onComplete(_ => promise.trySuccess(End.Lost))(using
         scala.concurrent.ExecutionContext.parasitic
       )
@@ -138,14 +138,14 @@ object WorkerNode:
     catch case _: TimeoutException => None
 
   /** Whether an event says that the member at an address has left, or cannot be reached. */
-  private[cluster] def isLost(address: Address, event: Any): Boolean = event match
+  private[cluster] def isLost(address: NodeAddress, event: Any): Boolean = event match
     case UnreachableMember(member) => member.address == address
     case MemberRemoved(member, _)  => member.address == address
     case _                         => false
 
   /** Joins the cluster. Reports membership and loss of the coordinator to `work`. */
   private def member(
-      seed: Address,
+      seed: NodeAddress,
       work: ActorRef[WorkerBehavior.Command],
       onUp: () => Unit
   ): Behavior[SelfUp | MemberEvent | ReachabilityEvent] =

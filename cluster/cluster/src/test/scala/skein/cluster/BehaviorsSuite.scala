@@ -162,7 +162,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals((untilReport(), untilReport()), (10, 10))
 
   test("a worker notices the loss of its own coordinator, but ignores the loss of other members"):
-    val config = NodeConfig.of(Endpoint("127.0.0.1", 0), None).fold(fail(_), identity)
+    val config = NodeConfig.of(skein.link.Address("127.0.0.1", 0), None).fold(fail(_), identity)
     val node   = ActorSystem("member", config)
     try
       val own   = Cluster(node.toTyped).selfMember

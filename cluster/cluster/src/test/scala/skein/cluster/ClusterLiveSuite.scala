@@ -10,13 +10,14 @@ import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
 import scala.util.{Try, Using}
 import skein.blocks.Ledger
+import skein.link.Address
 import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Coordinator and workers as nodes of their own in one JVM, over loopback. */
 class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   import scala.concurrent.ExecutionContext.Implicits.global
 
-  private val loopback = Endpoint("127.0.0.1", 0)
+  private val loopback = Address("127.0.0.1", 0)
   private val question = bytes("reverse")
   private val works    = Vector.tabulate(120)(number => bytes(s"block $number"))
   private val answers  = works.map(_.reverse)
@@ -51,7 +52,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val joined = Semaphore(0)
     val ledger = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val node   = CoordinatorNode
-      .start(Endpoint(host, port), tls, question, ledger, "one")(heard)
+      .start(Address(host, port), tls, question, ledger, "one")(heard)
       .fold(fail(_), identity)
 
     private def heard(one: WorkerEvent): Unit =
@@ -69,7 +70,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private def coordinating(body: Coordinating => Unit): Unit = coordinating(None)(body)
 
   private def worker(
-      to: Endpoint,
+      to: Address,
       name: String,
       solvers: BlockSolverFactory,
       build: String = "one",
@@ -236,10 +237,10 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   test("beyond loopback no node listens or connects without certificates"):
     val folder  = temporaryFolder()
     val ledger  = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
-    val refused = CoordinatorNode.start(Endpoint("0.0.0.0", 0), None, question, ledger, "one")(_ => ())
+    val refused = CoordinatorNode.start(Address("0.0.0.0", 0), None, question, ledger, "one")(_ => ())
     assert(clue(refused.swap.getOrElse("started")).contains("certificates"))
     ledger.close()
-    val joined = WorkerNode(Endpoint("192.0.2.1", 1), loopback, None, 1, Reversing(), 1.second)(_ => ()).run()
+    val joined = WorkerNode(Address("192.0.2.1", 1), loopback, None, 1, Reversing(), 1.second)(_ => ()).run()
     assert(clue(joined.swap.getOrElse("joined")).contains("certificates"))
 
   test(

@@ -82,6 +82,8 @@ private[formula] object Shape:
   private val MostDepth = 60
   private val MostParts = 100_000
 
+  /** The fields of a class that tracing reads, in the order of declaration; those of superclasses are first.
+    */
   def fieldsOf(kind: Class[?]): Vector[java.lang.reflect.Field] =
     Iterator
       .iterate[Class[?]](kind)(_.getSuperclass)

@@ -110,14 +110,12 @@ object Formula:
       val files  = ClassFiles(loader)
       val trace  = Trace()
       val lifter = Lifter(files, trace)
-      val names  = Vector.newBuilder[String]
+      val names  = mutable.ArrayBuffer.empty[String]
       val told   = mutable.HashMap.empty[Value, Set[(String, Value)]].withDefaultValue(Set.empty)
-      var count  = 0
 
       def input(name: String): Node =
         names += name
-        count += 1
-        trace.input(count - 1)
+        trace.input(names.size - 1)
 
       def argument(kind: Class[?], name: String): Value =
         if kind == classOf[Double] then Number(input(name))
@@ -138,16 +136,18 @@ object Formula:
             s"the argument $name is a ${kind.getName}; expected a Double, doubles, or a class of them"
           )
         else
-          val fields =
-            fieldsOf(kind).map(each => each.getName -> argument(each.getType, s"$name.${each.getName}")).toMap
-          val made = lifter.make(Thing.Record(kind.getName.replace('.', '/'), fields))
+          val fields = Shape
+            .fieldsOf(kind)
+            .map(each => each.getName -> argument(each.getType, s"$name.${each.getName}"))
+            .toMap
+          val made = lifter.make(Thing.Record(ClassFiles.nameOf(kind), fields))
           told(made) = fields.filter((field, _) => known.contains(s"$name.$field")).toSet
           made
 
       val descriptor = java.lang.invoke.MethodType
         .methodType(method.getReturnType, method.getParameterTypes)
         .toMethodDescriptorString
-      val owner = target.getClass.getName.replace('.', '/')
+      val owner = ClassFiles.nameOf(target.getClass)
       val code  = files
         .method(owner, method.getName, descriptor)
         .getOrElse(
@@ -175,13 +175,13 @@ object Formula:
         case _           => throw Untraceable(s"$name is no double")
 
       def ofFields(className: String, fields: Map[String, Value], name: String): Vector[(String, Node)] =
-        fieldsOf(files.load(className)).toVector
+        Shape.fieldsOf(files.load(className))
           .map(_.getName)
           // A pair of doubles has a specialised class, whose inherited fields are empty.
           .filter(each => fields.contains(each) && fields(each) != Null)
           .flatMap(each => outputsOf(fields(each), if name == Answer then each else s"$name.$each"))
 
-      Right(lifted(trace, names.result(), outputsOf(answer, Answer), lifter, target.getClass))
+      Right(lifted(trace, names.toVector, outputsOf(answer, Answer), lifter, target.getClass))
     catch
       case refused: Untraceable => Left(refused)
       case NonFatal(other)      => Left(Untraceable(s"${target.getClass.getName}.${method.getName}: $other"))
@@ -204,22 +204,20 @@ object Formula:
       val files  = ClassFiles(loader)
       val trace  = Trace()
       val lifter = Lifter(files, trace)
-      val names  = Vector.newBuilder[String]
-      var count  = 0
+      val names  = mutable.ArrayBuffer.empty[String]
       val args   = arguments.map: argument =>
         lifter.argument(
           argument,
           path =>
             names += path.toString
-            count += 1
-            trace.input(count - 1)
+            trace.input(names.size - 1)
         )
       val code = files
         .method(ClassFiles.nameOf(target.getClass), method, descriptor)
         .getOrElse(throw Untraceable(s"${target.getClass.getName} has no method $method"))
       val answer = lifter.call(code, Known(target, Some(Path(None, PathStep.Itself))) +: args.toVector)
       val (outputs, came) = read(trace, skein.formula.Answer(answer, lifter))
-      Right((lifted(trace, names.result(), outputs, lifter, target.getClass), came))
+      Right((lifted(trace, names.toVector, outputs, lifter, target.getClass), came))
     catch
       case refused: Untraceable => Left(refused)
       case NonFatal(other)      => Left(Untraceable(s"${target.getClass.getName}.$method: $other"))
@@ -231,16 +229,6 @@ object Formula:
       _.getSuperclass
     ).takeWhile(_ != null).flatMap(_.getDeclaredMethods).toVector ++
       of.getMethods
-
-  /** The fields of a class that tracing reads, in the order of declaration; those of superclasses are first.
-    */
-  private def fieldsOf(kind: Class[?]): Seq[java.lang.reflect.Field] =
-    Iterator
-      .iterate[Class[?]](kind)(_.getSuperclass)
-      .takeWhile(each => each != null && each != classOf[Object])
-      .toSeq
-      .reverse
-      .flatMap(_.getDeclaredFields.filterNot(each => Modifier.isStatic(each.getModifiers)))
 
 /** An object whose method already is a formula, so that its bytecode is not read. */
 private[skein] trait KnownFormula:

@@ -118,14 +118,9 @@ private[formula] final class Objects(
     /** Converts a specialised tuple to the generic class if the other branch has the generic one, for example
       * because one of its numbers is a constant.
       */
-    private def alikeOf(a: Thing, b: Thing): (Thing, Thing) = (classOf(a), classOf(b)) match
-      case (Some(x), Some(y)) if x != y => (unspecialised(a), unspecialised(b))
-      case _                            => (a, b)
-
-    private def classOf(thing: Thing) = thing match
-      case Record(of, _)       => Some(of)
-      case Thing.Either(of, _) => Some(of)
-      case _                   => None
+    private def alikeOf(a: Thing, b: Thing): (Thing, Thing) = (a, b) match
+      case (Fields(of, _), Fields(or, _)) if of != or => (unspecialised(a), unspecialised(b))
+      case _                                          => (a, b)
 
     private def unspecialised(thing: Thing): Thing = thing match
       case Record(Specialised(of), fields)       => Record(of, boxed(fields))
@@ -150,9 +145,8 @@ private[formula] final class Objects(
   def fieldOf(of: Value, name: String, kind: ClassDesc): Value = settled(of) match
     case OneOf(condition, yes, no) => one(condition, fieldOf(yes, name, kind), fieldOf(no, name, kind))
     case Made(id)                  => heap(id) match
-        case Record(_, fields)       => fields.getOrElse(name, zeroOf(kind))
-        case Thing.Either(_, fields) => fields.getOrElse(name, zeroOf(kind))
-        case _                       => refuse(s"it reads $name of an array or a closure")
+        case Fields(_, fields) => fields.getOrElse(name, zeroOf(kind))
+        case _                 => refuse(s"it reads $name of an array or a closure")
     case Known(what, path) =>
       val field = found(what.getClass, name)
       if !java.lang.reflect.Modifier.isFinal(field.getModifiers) && !ClassFiles.isLibrary(
@@ -319,8 +313,7 @@ private[formula] final class Objects(
 
   def classOfThing(value: Value): Option[String] = value match
     case Made(id) => heap(id) match
-        case Record(name, _)             => Some(name)
-        case Thing.Either(name, _)       => Some(name)
+        case Fields(name, _)             => Some(name)
         case Closure(interface, _, _, _) => Some(interface)
         case _                           => None
     case Known(what, _)   => Some(ClassFiles.nameOf(what.getClass))

@@ -29,20 +29,18 @@ final case class Avoidance(
     marginM: Double,
     horizonS: Double,
     arrivePerS: Double = 0.4
-) extends Policy, Goal:
+) extends Policy.Memoryless, Goal:
   private val apartM = minimumM + marginM
   require(apartM > 0 && horizonS > 0, s"discs of $apartM m and a horizon of $horizonS s keep nobody apart")
 
-  type Memory = Unit
-  def start: Unit                = ()
   override def isPlanar: Boolean = true
 
-  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+  def action(seen: Observation): Action =
     val wanted = preferred(seen)
     val bounds = boundsOf(seen)
     val within = bounds.nearest(wanted, mostMps)
     val chosen = if within.missing > 0 then bounds.leastBroken(wanted, mostMps) else within.velocity
-    (seen.towards(chosen.north, chosen.east, mostMps), ())
+    seen.towards(chosen.north, chosen.east, mostMps)
 
   def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     val (north, east) = (goalNorthM - seen.northM(seen.self), goalEastM - seen.eastM(seen.self))

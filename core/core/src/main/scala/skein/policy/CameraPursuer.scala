@@ -11,13 +11,11 @@ import skein.units.*
   * @param sensor the sensor's name; None if readings of the opponent are used
   */
 final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], opponentStartNed: Vector3)
-    extends Policy:
-  type Memory = Unit
-  def start: Unit = ()
+    extends Policy.Memoryless:
 
   override def sensors: Set[String] = sensor.toSet
 
-  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+  def action(seen: Observation): Action =
     val own           = seen.own.kinematics
     val (place, goes) = opponent(seen)
     val towards       = place - own.positionNed
@@ -33,15 +31,7 @@ final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], op
     )
     val speed = seen.cruise.value
     val yaw   = Yaw.Towards(Radians(StrictMath.atan2(towards.y, towards.x)))
-    (
-      Action.VelocityAt(
-        speed * StrictMath.cos(heading),
-        speed * StrictMath.sin(heading),
-        seen.startDown,
-        yaw
-      ),
-      ()
-    )
+    Action.VelocityAt(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), seen.startDown, yaw)
 
   private def opponent(seen: Observation): (Vector3, Vector3) = sensor match
     case None =>

@@ -26,21 +26,19 @@ final case class DynamicWindow(
     bodyM: Double = 0.5,
     lagS: Double = 0.55,
     horizonS: Double = 3
-) extends Policy:
+) extends Policy.Memoryless:
   import DynamicWindow.*
 
-  type Memory = Unit
-  def start: Unit                = ()
   override def isPlanar: Boolean = true
 
   override def sensors: Set[String] = Set(sensor)
 
-  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+  def action(seen: Observation): Action =
     val (heading, speed) = seen.sensed.get(sensor).filter(_.age < TooOld) match
       case None       => (seen.headingRad, 0.0)
       case Some(scan) =>
         best(seen.own.kinematics.positionNed, seen.own.kinematics.velocityNed, seen.headingRad, scan)
-    (seen.along(heading, speed), ())
+    seen.along(heading, speed)
 
   // The instants to check, and the time for which the velocity has carried the vehicle until each.
   private val instants       = (1 to (horizonS / StepS).toInt).map(_ * StepS).toArray

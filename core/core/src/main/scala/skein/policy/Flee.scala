@@ -1,13 +1,11 @@
 package skein.policy
 
 /** Flees straight away from the nearest other vehicle, and from the first of several equally near. */
-final case class Flee(speedMps: Double) extends Policy:
+final case class Flee(speedMps: Double) extends Policy.Memoryless:
 
-  type Memory = Unit
-  def start: Unit                = ()
   override def isPlanar: Boolean = true
 
-  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+  def action(seen: Observation): Action =
     val self      = seen.self
     var least     = Double.PositiveInfinity
     var awayNorth = 0.0
@@ -24,4 +22,4 @@ final case class Flee(speedMps: Double) extends Policy:
       other += 1
     val heading =
       if awayNorth == 0 && awayEast == 0 then seen.headingRad else StrictMath.atan2(awayEast, awayNorth)
-    (seen.along(heading, speedMps), ())
+    seen.along(heading, speedMps)

@@ -16,13 +16,11 @@ final case class FollowOnCircuit(
     mostMps: Double,
     aheadM: Double,
     perS: Double = 0.5
-) extends Policy:
+) extends Policy.Memoryless:
 
-  type Memory = Unit
-  def start: Unit                = ()
   override def isPlanar: Boolean = true
 
-  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+  def action(seen: Observation): Action =
     val (north, east)     = (seen.northM(seen.self), seen.eastM(seen.self))
     val place             = circuit.nearest(north, east)
     val round             = circuit.nearest(seen.northM(leader), seen.eastM(leader)) - place
@@ -30,4 +28,4 @@ final case class FollowOnCircuit(
     val leaderMps         = StrictMath.hypot(seen.northMps(leader), seen.eastMps(leader))
     val speed             = (leaderMps + perS * (gap - gapM)).max(0.0).min(mostMps)
     val (toNorth, toEast) = circuit.point(place + aheadM)
-    (seen.along(StrictMath.atan2(toEast - east, toNorth - north), speed), ())
+    seen.along(StrictMath.atan2(toEast - east, toNorth - north), speed)

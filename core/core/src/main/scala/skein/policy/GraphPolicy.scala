@@ -70,9 +70,9 @@ private[skein] sealed class GraphPolicy(val graph: PolicyGraph, val values: Arra
     graph.inputs.iterator
       .map:
         case PolicyInput.Position(vehicle, axis) =>
-          axisOf(seen.vehicles(vehicle).kinematics.positionNed, axis)
+          seen.vehicles(vehicle).kinematics.positionNed.component(axis)
         case PolicyInput.Velocity(vehicle, axis) =>
-          axisOf(seen.vehicles(vehicle).kinematics.velocityNed, axis)
+          seen.vehicles(vehicle).kinematics.velocityNed.component(axis)
         case PolicyInput.Heading(vehicle) => seen.headings(vehicle).value
         case PolicyInput.Age(vehicle)     => seen.vehicles(vehicle).age.toSeconds
         case PolicyInput.Elapsed          => seen.elapsed.toSeconds
@@ -82,11 +82,6 @@ private[skein] sealed class GraphPolicy(val graph: PolicyGraph, val values: Arra
         case PolicyInput.StartDown        => seen.startDown.value
         case PolicyInput.Memory(number)   => memory(number)
       .toArray
-
-  private def axisOf(vector: skein.units.Vector3, axis: Int) = axis match
-    case 0 => vector.x
-    case 1 => vector.y
-    case _ => vector.z
 
   override def equals(other: Any): Boolean = other match
     case same: GraphPolicy => (same.graph eq graph) && same.values.sameElements(values)

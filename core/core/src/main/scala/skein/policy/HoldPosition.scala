@@ -1,9 +1,6 @@
 package skein.policy
 
 /** Holds the vehicle's position; used when a policy does not answer. */
-object HoldPosition extends Policy:
-  type Memory = Unit
+object HoldPosition extends Policy.Memoryless:
 
-  def start: Unit = ()
-
-  def choose(seen: Observation, memory: Unit): (Action, Unit) = (Action.Hover, ())
+  def action(seen: Observation): Action = Action.Hover

@@ -1,17 +1,16 @@
 package skein.policy
 
+import scala.collection.mutable
 import skein.signal.Kinematics
 import skein.units.*
 
 /** Identifiers of an example's inputs, for tracing: consecutive numbers from 0. Mutable. */
 private[skein] final class InputTags:
-  private val told = Vector.newBuilder[PolicyInput]
-  private var next = 0
+  private val told = mutable.ArrayBuffer.empty[PolicyInput]
 
   def tag(input: PolicyInput): Double =
     told += input
-    next += 1
-    (next - 1).toDouble
+    told.size - 1.0
 
   def span(input: PolicyInput): Span = Span.ofNanos(tag(input).toLong)
 
@@ -30,7 +29,7 @@ private[skein] final class InputTags:
   private def vector(of: Int => PolicyInput) = Vector3(tag(of(0)), tag(of(1)), tag(of(2)))
 
   /** The inputs in the order of their tags. */
-  def inputs: Vector[PolicyInput] = told.result()
+  def inputs: Vector[PolicyInput] = told.toVector
 
 private[skein] object InputTags:
   private val attitude = "it reads the attitude, which models of vehicles do not tell"

@@ -18,13 +18,11 @@ final case class KeepSlot(
     mostMps: Double,
     lagS: Double,
     pursuit: Pursuit = Pursuit()
-) extends Policy, Goal:
+) extends Policy.Memoryless, Goal:
 
-  type Memory = Unit
-  def start: Unit                = ()
   override def isPlanar: Boolean = true
 
-  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+  def action(seen: Observation): Action =
     val self                      = seen.self
     val place                     = circuit.nearest(seen.northM(leader), seen.eastM(leader))
     val heading                   = circuit.headingRad(place)
@@ -38,7 +36,7 @@ final case class KeepSlot(
     val turnRadps    = alongMps * curvature / (1 - curvature * toTheRightM).max(KeepSlot.LeastShare)
     val slotNorthMps = seen.northMps(leader) - turnRadps * eastOffset
     val slotEastMps  = seen.eastMps(leader) + turnRadps * northOffset
-    val action       = seen.towards(
+    seen.towards(
       pursuit.along(
         seen.northM(leader) + northOffset,
         slotNorthMps,
@@ -53,7 +51,6 @@ final case class KeepSlot(
       ) + lagS * turnRadps * slotNorthMps,
       mostMps
     )
-    (action, ())
 
   /** The future position of the slot, if the leader continues along the circuit at its present speed. */
   def wanted(seen: Observation, aheadS: Double): (Double, Double) =

@@ -6,19 +6,18 @@ package skein.policy
   *
   * @param aheadM about the distance that the vehicle flies before it follows a command
   */
-final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double) extends Policy, Goal:
+final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double)
+    extends Policy.Memoryless, Goal:
   def mostMps: Double = speedMps
 
   def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     circuit.point(circuit.nearest(seen.northM(seen.self), seen.eastM(seen.self)) + speedMps * aheadS)
 
-  type Memory = Unit
-  def start: Unit                = ()
   override def isPlanar: Boolean = true
 
-  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+  def action(seen: Observation): Action =
     val (north, east)     = (seen.northM(seen.self), seen.eastM(seen.self))
     val (toNorth, toEast) = circuit.point(circuit.nearest(north, east) + aheadM)
     val distance          = StrictMath.hypot(toNorth - north, toEast - east)
     val heading = if distance == 0 then seen.headingRad else StrictMath.atan2(toEast - east, toNorth - north)
-    (seen.along(heading, speedMps), ())
+    seen.along(heading, speedMps)

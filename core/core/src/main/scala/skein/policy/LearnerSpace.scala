@@ -44,8 +44,7 @@ final case class LearnerSpace(climbs: Boolean):
       )
 
 /** A policy that observes and decides as learners do, without a memory. */
-trait SharesPolicy extends Policy:
-  type Memory = Unit
+trait SharesPolicy extends Policy.Memoryless:
 
   def space: LearnerSpace
 
@@ -59,8 +58,6 @@ trait SharesPolicy extends Policy:
   /** The components of the action for an observation, each from −1 to 1. */
   def shares(observed: Array[Double]): Array[Double]
 
-  final def start: Unit = ()
-
   final override def isAgainstOne: Boolean = true
 
   final override def isPlanar: Boolean = !space.climbs
@@ -69,8 +66,7 @@ trait SharesPolicy extends Policy:
     val turn = shares(0) * (turnRateRadPerS * seen.elapsed.toSeconds + turnRad)
     space.action(seen, turn, if space.climbs then shares(1) * climbMps else 0)
 
-  final def choose(seen: Observation, memory: Unit): (Action, Unit) =
-    (act(seen, shares(space.observe(seen))), ())
+  final def action(seen: Observation): Action = act(seen, shares(space.observe(seen)))
 
 object LearnerSpace:
   private final val LevelInputs = 9

@@ -33,3 +33,16 @@ trait Policy:
 
   /** Decides: returns the present action, and the memory for the next decision. A pure function. */
   def choose(seen: Observation, memory: Memory): (Action, Memory)
+
+object Policy:
+
+  /** A policy that decides only by the present observation. */
+  trait Memoryless extends Policy:
+    type Memory = Unit
+
+    final def start: Unit = ()
+
+    /** The present action, as [[Policy.choose]] returns it. */
+    def action(seen: Observation): Action
+
+    final def choose(seen: Observation, memory: Unit): (Action, Unit) = (action(seen), ())

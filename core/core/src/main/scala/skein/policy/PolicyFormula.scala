@@ -9,22 +9,16 @@ import skein.units.*
   * must be of that kind.
   *
   * @param inputs meaning of each of the formula's inputs
-  * @param motion nodes of the decided horizontal motion
-  * @param vertical nodes of the decided vertical motion; None if it is always the altitude of the start
-  * @param memory nodes of the next memory, in the order of [[PolicyInput.Memory]]
-  * @param turns whether its actions may turn the vehicle
   */
 final class PolicyFormula private (
     val formula: Formula,
     val inputs: Vector[PolicyInput],
-    val motion: PolicyFormula.Motion,
-    val vertical: Option[PolicyFormula.Vertical],
-    val memory: Vector[Node],
-    val turns: Boolean,
+    decided: PolicyFormula.Decided,
     start: Example,
     assignment: Assignment
 ):
   import PolicyFormula.*
+  export decided.{memory, motion, turns, vertical}
 
   def fits(policy: Policy, assignment: Assignment): Boolean =
     formula.fits(Deciding(policy, assignment)) && (isBegun(policy) || start.isLike(memoryOf(policy)))
@@ -119,17 +113,7 @@ object PolicyFormula:
       val formula            = Formula.ofGraph(trace, inputs.map(_.toString), outputs, graph.settings)(
         Deciding.graphOf(_).exists(_.graph eq graph)
       )(Deciding.graphOf(_).fold(Array.emptyDoubleArray)(_.values))
-      made(formula, inputs, decided, memoryOf(policy), assignment)
-
-  private def made(
-      formula: Formula,
-      inputs: Vector[PolicyInput],
-      decided: Decided,
-      start: Example,
-      assignment: Assignment
-  ): PolicyFormula =
-    import decided.*
-    new PolicyFormula(formula, inputs, motion, vertical, memory, turns, start, assignment)
+      new PolicyFormula(formula, inputs, decided, memoryOf(policy), assignment)
 
   private def unflown(action: String) =
     s"it decides for $action; SIMD flies Action.Along, VelocityAt, Velocity and Hover"
@@ -157,7 +141,7 @@ object PolicyFormula:
     yield
       val (formula, decided) = traced
       val inputs             = seen.inputs ++ starts.indices.map(PolicyInput.Memory(_))
-      made(formula, inputs, decided, memory, assignment)
+      new PolicyFormula(formula, inputs, decided, memory, assignment)
 
   /** A policy's initial memory, as an example and as components. */
   private def startOf(policy: Policy): Either[Untraceable, (Example, Vector[Double])] =
@@ -171,6 +155,11 @@ object PolicyFormula:
   private def memoryOf(policy: Policy) =
     Example("memory", policy.start.asInstanceOf[AnyRef], takesWholes = true)
 
+  /** @param motion nodes of the decided horizontal motion
+    * @param vertical nodes of the decided vertical motion; None if it is always the altitude of the start
+    * @param memory nodes of the next memory, in the order of [[PolicyInput.Memory]]
+    * @param turns whether its actions may turn the vehicle
+    */
   private final case class Decided(
       motion: Motion,
       vertical: Option[Vertical],

@@ -12,12 +12,9 @@ final case class Shadowing(
     eastM: Double,
     mostMps: Double,
     pursuit: Pursuit = Pursuit()
-) extends Policy:
+) extends Policy.Memoryless:
 
-  type Memory = Unit
-  def start: Unit = ()
-
-  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+  def action(seen: Observation): Action =
     val self  = seen.self
     val north = pursuit.along(
       seen.northM(leader) + northM,
@@ -31,4 +28,4 @@ final case class Shadowing(
       seen.eastM(self),
       seen.eastMps(self)
     )
-    (Weave.level(seen, StrictMath.atan2(east, north), StrictMath.hypot(north, east).min(mostMps)), ())
+    Weave.level(seen, StrictMath.atan2(east, north), StrictMath.hypot(north, east).min(mostMps))

@@ -11,23 +11,20 @@ package skein.policy
   * @param mostMps maximum commanded speed
   */
 final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursuit: Pursuit = Pursuit())
-    extends Policy, Goal:
+    extends Policy.Memoryless, Goal:
 
-  type Memory = Unit
-  def start: Unit                = ()
   override def isPlanar: Boolean = true
 
-  def choose(seen: Observation, memory: Unit): (Action, Unit) =
-    val slot   = slotRad(seen)
-    val north  = seen.northM(evader) + ringM * StrictMath.cos(slot)
-    val east   = seen.eastM(evader) + ringM * StrictMath.sin(slot)
-    val self   = seen.self
-    val action = seen.towards(
+  def action(seen: Observation): Action =
+    val slot  = slotRad(seen)
+    val north = seen.northM(evader) + ringM * StrictMath.cos(slot)
+    val east  = seen.eastM(evader) + ringM * StrictMath.sin(slot)
+    val self  = seen.self
+    seen.towards(
       pursuit.along(north, seen.northMps(evader), seen.northM(self), seen.northMps(self)),
       pursuit.along(east, seen.eastMps(evader), seen.eastM(self), seen.eastMps(self)),
       mostMps
     )
-    (action, ())
 
   def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     val slot = slotRad(seen)

@@ -38,17 +38,7 @@ private[skein] sealed class FileScenario(val file: ScenarioFile, val values: Arr
       GraphPolicy(vehicle.policy, values)
     )
 
-  override def limits: Vector[Limit] = file.limits.map: limit =>
-    val numbers = limit.numbers.map(number)
-    limit.kind match
-      case "separation"            => Limit.separation(Metres(numbers(0)))
-      case "horizontal-separation" => Limit.horizontalSeparation(Metres(numbers(0)))
-      case "floor"                 => Limit.floor(Metres(numbers(0)))
-      case "ceiling"               => Limit.ceiling(Metres(numbers(0)))
-      case "speed"                 => Limit.speed(MetresPerSecond(numbers(0)))
-      case "circle" => Limit.geofence(Metres(numbers(0)), Metres(numbers(1)), Metres(numbers(2)))
-      case _        =>
-        Limit.geofence(numbers.grouped(2).map(corner => (Metres(corner(0)), Metres(corner(1)))).toVector)
+  override def limits: Vector[Limit] = file.limits.map(limit => limit.kind.of(limit.numbers.map(number)))
 
   private lazy val drawn: Vector[(Series, Vector[Measure])] = file.series.map: each =>
     val bound  = each.bound.map((name, value) => Bound(name, number(value)))
@@ -62,17 +52,7 @@ private[skein] sealed class FileScenario(val file: ScenarioFile, val values: Arr
       case Some(("last", seconds)) => Window.Last(number(seconds))
       case Some((_, seconds))      => Window.After(number(seconds))
       case None                    => Window.Whole
-    by.reduction match
-      case "mean"           => of.mean(by.name, over)
-      case "rms"            => of.rms(by.name, over)
-      case "sd"             => of.sd(by.name, over)
-      case "least"          => of.least(by.name, over)
-      case "most"           => of.most(by.name, over)
-      case "least-at"       => of.leastAt(by.name, over)
-      case "most-at"        => of.mostAt(by.name, over)
-      case "time-positive"  => of.timeAbove(by.name, 0, over)
-      case "stays-positive" => of.staysAbove(by.name, 0)
-      case _                => of.firstAbove(by.name, 0)
+    of.measure(by.name, over, by.reduction)
 
   override def series: Vector[Series]    = drawn.map(_._1)
   override def measures: Vector[Measure] = drawn.flatMap(_._2)

@@ -71,45 +71,45 @@ final class Series private (
 
   def title: String = if unit.isEmpty then name else s"$name, $unit"
 
-  def mean(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Mean)
+  def mean(name: String, over: Window = Window.Whole): Measure = measure(name, over, Reduction.Mean)
 
-  def rms(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Rms)
+  def rms(name: String, over: Window = Window.Whole): Measure = measure(name, over, Reduction.Rms)
 
-  def sd(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Sd)
+  def sd(name: String, over: Window = Window.Whole): Measure = measure(name, over, Reduction.Sd)
 
-  def least(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Least)
+  def least(name: String, over: Window = Window.Whole): Measure = measure(name, over, Reduction.Least)
 
-  def most(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Most)
+  def most(name: String, over: Window = Window.Whole): Measure = measure(name, over, Reduction.Most)
 
   /** First time at which the quantity has its minimum, s. */
-  def leastAt(name: String, over: Window = Window.Whole): Measure = timed(name, over, Reduction.LeastAt)
+  def leastAt(name: String, over: Window = Window.Whole): Measure = measure(name, over, Reduction.LeastAt)
 
   /** First time at which the quantity has its maximum, s. */
-  def mostAt(name: String, over: Window = Window.Whole): Measure = timed(name, over, Reduction.MostAt)
+  def mostAt(name: String, over: Window = Window.Whole): Measure = measure(name, over, Reduction.MostAt)
 
   /** Total time in which the quantity is above a bound, s. */
   def timeAbove(name: String, bound: Double, over: Window = Window.Whole): Measure =
-    above(bound).timed(name, over, Reduction.TimePositive)
+    above(bound).measure(name, over, Reduction.TimePositive)
 
   /** Total time in which the quantity is below a bound, s. */
   def timeBelow(name: String, bound: Double, over: Window = Window.Whole): Measure =
-    below(bound).timed(name, over, Reduction.TimePositive)
+    below(bound).measure(name, over, Reduction.TimePositive)
 
   /** First time at which the quantity is above a bound, s; no value if it never is. */
   def firstAbove(name: String, bound: Double): Measure =
-    above(bound).timed(name, Window.Whole, Reduction.FirstPositive)
+    above(bound).measure(name, Window.Whole, Reduction.FirstPositive)
 
   /** First time at which the quantity is below a bound, s; no value if it never is. */
   def firstBelow(name: String, bound: Double): Measure =
-    below(bound).timed(name, Window.Whole, Reduction.FirstPositive)
+    below(bound).measure(name, Window.Whole, Reduction.FirstPositive)
 
   /** Time from which the quantity stays above a bound until the end, s; no value if it ends otherwise. */
   def staysAbove(name: String, bound: Double): Measure =
-    above(bound).timed(name, Window.Whole, Reduction.StaysPositive)
+    above(bound).measure(name, Window.Whole, Reduction.StaysPositive)
 
   /** Time from which the quantity stays below a bound until the end, s; no value if it ends otherwise. */
   def staysBelow(name: String, bound: Double): Measure =
-    below(bound).timed(name, Window.Whole, Reduction.StaysPositive)
+    below(bound).measure(name, Window.Whole, Reduction.StaysPositive)
 
   private def above(bound: Double): Series =
     if bound == 0 then this
@@ -118,11 +118,8 @@ final class Series private (
   private def below(bound: Double): Series =
     new Series(name, unit, None, quantity.map(Shortfall(_, bound)))(tracks => at(tracks).andThen(bound - _))
 
-  private def timed(name: String, over: Window, reduction: Reduction) = measure(name, "s", over, reduction)
-
-  private def reduced(name: String, over: Window, reduction: Reduction) = measure(name, unit, over, reduction)
-
-  private def measure(name: String, unit: String, over: Window, reduction: Reduction): Measure =
+  private[scenario] def measure(name: String, over: Window, reduction: Reduction): Measure =
+    val unit                                = if reduction.isTime then "s" else this.unit
     def of(tracks: Tracks, instants: Range) =
       reduction.of(instants.map(at(tracks)), index => tracks.timeS(instants(index)), tracks.stepS)
     quantity.fold(Measure.over(name, unit, over)(of))(each =>

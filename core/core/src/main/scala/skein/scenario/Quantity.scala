@@ -63,6 +63,9 @@ enum Reduction:
   /** Time from which the value was above 0 until the end, s; infinite if the last value was not. */
   case StaysPositive
 
+  /** Whether it is a time, not a value of the quantity. */
+  private[scenario] def isTime: Boolean = !Set(Mean, Rms, Sd, Least, Most)(this)
+
   /** Whether it is a time that may never come. */
   private[skein] def mayBeNever: Boolean = this == FirstPositive || this == StaysPositive
 

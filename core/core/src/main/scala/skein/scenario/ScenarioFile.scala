@@ -2,6 +2,7 @@ package skein.scenario
 
 import skein.formula.{Evaluation, Node}
 import skein.policy.PolicyGraph
+import skein.units.{Metres, MetresPerSecond}
 
 /** A scenario as a file of data, without code; `docs/scenario-file.md` defines its lines. The nodes of
   * vehicles, limits and windows depend only on settings.
@@ -57,8 +58,26 @@ private[skein] object ScenarioFile:
       policy: PolicyGraph
   )
 
+  /** A kind of limits.
+    *
+    * @param count number of its parameters; 0 for any number of corners
+    */
+  private[scenario] enum LimitKind(val word: String, val count: Int, val of: Vector[Double] => Limit):
+    case Separation extends LimitKind("separation", 1, of => Limit.separation(Metres(of(0))))
+    case Horizontal
+        extends LimitKind("horizontal-separation", 1, of => Limit.horizontalSeparation(Metres(of(0))))
+    case Floor   extends LimitKind("floor", 1, of => Limit.floor(Metres(of(0))))
+    case Ceiling extends LimitKind("ceiling", 1, of => Limit.ceiling(Metres(of(0))))
+    case Speed   extends LimitKind("speed", 1, of => Limit.speed(MetresPerSecond(of(0))))
+    case Circle
+        extends LimitKind("circle", 3, of => Limit.geofence(Metres(of(0)), Metres(of(1)), Metres(of(2))))
+    case Polygon extends LimitKind("polygon", 0, of => Limit.geofence(corners(of)))
+
+  private def corners(of: Vector[Double]) =
+    of.grouped(2).map(corner => (Metres(corner(0)), Metres(corner(1)))).toVector
+
   /** A limit of this kind, with the kind's parameters. */
-  private[scenario] final case class Bounded(kind: String, numbers: Vector[Node])
+  private[scenario] final case class Bounded(kind: LimitKind, numbers: Vector[Node])
 
   /** A quantity over time.
     *
@@ -75,4 +94,8 @@ private[skein] object ScenarioFile:
   )
 
   /** @param window `last` or `after`, with the number of seconds */
-  private[scenario] final case class Reduced(name: String, reduction: String, window: Option[(String, Node)])
+  private[scenario] final case class Reduced(
+      name: String,
+      reduction: Reduction,
+      window: Option[(String, Node)]
+  )

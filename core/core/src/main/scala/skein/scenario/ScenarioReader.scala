@@ -130,9 +130,9 @@ private[scenario] final class ScenarioReader private (text: String):
 
   private def limit(words: ScenarioWords): Unit =
     room(limits.size, MostLimits, "limits")
-    val (kind, count) = words.oneOf("a limit", Limits)(_._1)
-    val numbers       = if count > 0 then Vector.fill(count)(words.fixed()) else words.allFixed()
-    if count == 0 && (numbers.size < 6 || numbers.size % 2 != 0) then
+    val kind    = words.oneOf("a limit", LimitKind.values)(_.word)
+    val numbers = if kind.count > 0 then Vector.fill(kind.count)(words.fixed()) else words.allFixed()
+    if kind.count == 0 && (numbers.size < 6 || numbers.size % 2 != 0) then
       wrong(s"expected north and east of three corners or more, got ${numbers.size} numbers")
     limits += Bounded(kind, numbers)
 
@@ -150,9 +150,9 @@ private[scenario] final class ScenarioReader private (text: String):
     val name = words.name("its name")
     if series.exists(_.measures.exists(_.name == name)) then
       wrong(s"expected a measure's own name, got '${shown(name)}' twice")
-    val reduction = words.oneOf("a reduction", Reductions)(identity)
+    val reduction = words.oneOf("a reduction", Reduction.values)(kind => Scenario.worded(kind.toString))
     val window    =
-      if Unwindowed.contains(reduction) then None
+      if reduction.mayBeNever then None
       else Seq("last", "after").find(words.isNext).map(word => word -> words.fixed())
     of.measures += Reduced(name, reduction, window)
 
@@ -255,21 +255,6 @@ private[scenario] object ScenarioReader:
   private val MostLimits   = 100
   private val MostSeries   = 100
   private val MostMeasures = 200
-
-  /** The kinds of limits, each with its number of parameters; 0 for any number of corners. */
-  private val Limits = Vector(
-    "separation"            -> 1,
-    "horizontal-separation" -> 1,
-    "floor"                 -> 1,
-    "ceiling"               -> 1,
-    "speed"                 -> 1,
-    "circle"                -> 3,
-    "polygon"               -> 0
-  )
-
-  private val Unwindowed = Vector("first-positive", "stays-positive")
-  private val Reductions =
-    Vector("mean", "rms", "sd", "least", "most", "least-at", "most-at", "time-positive") ++ Unwindowed
 
   private val Words = Vector(
     "name",

@@ -2,7 +2,6 @@ package skein.scenario
 
 import skein.formula.{Evaluation, Formula, Node, Trace}
 import skein.policy.PolicyInput
-import skein.units.Vector3
 
 /** A value computed from the present knowledge of all vehicles, as data.
   *
@@ -13,15 +12,15 @@ private[scenario] final class Watched(trace: Trace, node: Node, val inputs: Vect
   private val evaluation = Evaluation(Vector(node))
 
   def apply(known: Known, values: Array[Double]): Double = at(values):
-    case PolicyInput.Position(vehicle, axis) => axisOf(known.vehicles(vehicle).kinematics.positionNed, axis)
-    case PolicyInput.Velocity(vehicle, axis) => axisOf(known.vehicles(vehicle).kinematics.velocityNed, axis)
+    case PolicyInput.Position(vehicle, axis) => known.vehicles(vehicle).kinematics.positionNed.component(axis)
+    case PolicyInput.Velocity(vehicle, axis) => known.vehicles(vehicle).kinematics.velocityNed.component(axis)
     case PolicyInput.Age(vehicle)            => known.vehicles(vehicle).age.toSeconds
     case _                                   => known.elapsed.toSeconds
 
   /** The value at one instant of a flight's tracks, which have no ages. */
   def apply(tracks: Tracks, instant: Int, values: Array[Double]): Double = at(values):
-    case PolicyInput.Position(vehicle, axis) => axisOf(tracks.positionNed(vehicle, instant), axis)
-    case PolicyInput.Velocity(vehicle, axis) => axisOf(tracks.velocityNed(vehicle, instant), axis)
+    case PolicyInput.Position(vehicle, axis) => tracks.positionNed(vehicle, instant).component(axis)
+    case PolicyInput.Velocity(vehicle, axis) => tracks.velocityNed(vehicle, instant).component(axis)
     case _                                   => tracks.timeS(instant)
 
   /** The number as a formula; that of a condition is 1 or 0.
@@ -39,8 +38,3 @@ private[scenario] final class Watched(trace: Trace, node: Node, val inputs: Vect
 
   private def at(values: Array[Double])(input: PolicyInput => Double): Double =
     evaluation(inputs.iterator.map(input).toArray, values)(0)
-
-  private def axisOf(vector: Vector3, axis: Int) = axis match
-    case 0 => vector.x
-    case 1 => vector.y
-    case _ => vector.z

@@ -130,6 +130,14 @@ private object LatencyText:
     def before(rest: String, what: String)(isSame: LatencyProfile => Boolean) =
       parse(rest, read).filterOrElse(!layers(_).exists(isSame), malformed(s"one $what", rest))
 
+    def impaired(what: String, form: String, rest: String)(read: String => Either[String, Impairment]) =
+      for
+        by      <- read(form).left.map(malformed(_, form))
+        latency <- before(rest, what):
+          case LatencyProfile.Impaired(_, _, other) => other.getClass == by.getClass
+          case _                                    => false
+      yield LatencyProfile.Impaired(text, latency, by)
+
     text match
       case s"rate:$rate,$rest" =>
         for
@@ -144,21 +152,12 @@ private object LatencyText:
         yield LatencyProfile.Correlated(text, latency, mean)
       case s"correlated:$came" => Left(malformed("a time and a profile such as 250ms,direct", came))
       case s"loss:$loss,$rest" =>
-        for
-          by      <- Impairment.loss(loss).left.map(malformed(_, loss))
-          latency <- before(rest, "loss")(impaired(_.isInstanceOf[Impairment.Loss]))
-        yield LatencyProfile.Impaired(text, latency, by)
+        impaired("loss", loss, rest)(Impairment.loss)
       case s"loss:$came" => Left(malformed("a share and a profile such as 5%,vpn or 5%/4,vpn", came))
       case s"outage:$outage,$rest" =>
-        for
-          by      <- Impairment.outage(outage, span).left.map(malformed(_, outage))
-          latency <- before(rest, "outage")(impaired(_.isInstanceOf[Impairment.Outage]))
-        yield LatencyProfile.Impaired(text, latency, by)
+        impaired("outage", outage, rest)(Impairment.outage(_, span))
       case s"reorder:$reorder,$rest" =>
-        for
-          by      <- Impairment.reordering(reorder, span).left.map(malformed(_, reorder))
-          latency <- before(rest, "reorder")(impaired(_.isInstanceOf[Impairment.Reordering]))
-        yield LatencyProfile.Impaired(text, latency, by)
+        impaired("reorder", reorder, rest)(Impairment.reordering(_, span))
       case s"reorder:$came" => Left(malformed("a share, a delay and a profile such as 2%/10ms,vpn", came))
       case s"outage:$came"  => Left(malformed("two times and a profile such as 1s/10s,vpn", came))
       case s"constant:$roundTrip"   => time(roundTrip).map(t => Steady(text, Constant(t)))
@@ -187,10 +186,6 @@ private object LatencyText:
 
   private def layers(profile: LatencyProfile): Iterator[LatencyProfile] =
     Iterator.unfold(Option(profile))(_.map(layer => (layer, layer.within)))
-
-  private def impaired(by: Impairment => Boolean)(layer: LatencyProfile): Boolean = layer match
-    case LatencyProfile.Impaired(_, _, impairment) => by(impairment)
-    case _                                         => false
 
   private def samples(path: String, content: String): Either[LatencyError, Vector[Double]] =
     val lines = content.linesIterator.map(_.trim).zipWithIndex.filterNot: (line, _) =>

@@ -11,6 +11,14 @@ private[skein] object Expect:
     of.iterator.foldLeft[Either[E, Vector[B]]](Right(Vector.empty)): (before, next) =>
       before.flatMap(done => one(next).map(done :+ _))
 
+  /** Checks that a number is neither below the least nor above the most. */
+  def within(name: String, value: Long, least: Long, most: Long): Either[String, Unit] =
+    that(value >= least && value <= most)(s"$name: expected $least to $most, got $value")
+
+  /** Converts an optional value; fails only if there is one, and it is wrong. */
+  def optional[A, E, B](of: Option[A])(one: A => Either[E, B]): Either[E, Option[B]] =
+    of.fold(Right(None))(one(_).map(Some(_)))
+
   /** Converts each element, or returns every mistake, one per line. */
   def all[A, B](of: Seq[A])(one: A => Either[String, B]): Either[String, Seq[B]] =
     val (wrong, right) = of.map(one).partitionMap(identity)

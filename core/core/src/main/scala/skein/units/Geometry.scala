@@ -9,6 +9,12 @@ final case class Vector3(x: Double, y: Double, z: Double):
   def *(factor: Double): Vector3 = Vector3(x * factor, y * factor, z * factor)
   def norm: Double               = math.sqrt(x * x + y * y + z * z)
 
+  /** @param axis 0, 1 or 2 */
+  private[skein] def component(axis: Int): Double = axis match
+    case 0 => x
+    case 1 => y
+    case _ => z
+
   /** Distance in the horizontal plane, m, as in the paper's game. */
   def horizontalDistance(other: Vector3): Double = StrictMath.hypot(x - other.x, y - other.y)
 

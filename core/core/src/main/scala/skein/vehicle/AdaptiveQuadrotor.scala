@@ -93,11 +93,8 @@ object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
     val predicted =
       learning.flights.map(flight => ParameterBelief.outputs(QuadrotorModel.AirSim.kinematics(flight)))
     val before = learning.belief.drifted(drifts, sinceSeen.toSeconds, priors)
-    val after  = measured.indices.foldLeft(before): (belief, i) =>
-      val effects = Vector.tabulate(moves.size)(j => (predicted(j + 1)(i) - predicted.head(i)) / moves(j))
-      // The update by an earlier output of this reading already changes the prediction of this output.
-      val explained = (belief.mean.lazyZip(before.mean).map(_ - _)).lazyZip(effects).map(_ * _).sum
-      belief.updated(effects, measured(i) - predicted.head(i) - explained, Noises(i))
+    val after  = before.updatedAll(measured, predicted.head, Noises): i =>
+      Vector.tabulate(moves.size)(j => (predicted(j + 1)(i) - predicted.head(i)) / moves(j))
     val belief                    = after.within(most)
     val keeps                     = StrictMath.exp(-sinceSeen.toSeconds / MemoryS)
     def off(from: Vector[Double]) = measured.lazyZip(from).map(_ - _).take(3).map(x => x * x).sum

@@ -23,6 +23,24 @@ final case class ParameterBelief private[vehicle] (mean: Vector[Double], covaria
       Vector.tabulate(mean.size, mean.size)((i, j) => covariance(i)(j) - gain(i) * spread(j))
     )
 
+  /** Adds a reading's outputs, one after the other.
+    *
+    * @param predicted the outputs by the mean
+    * @param noises the outputs' standard deviations
+    * @param effects an output's derivative by each parameter, by the output's index
+    */
+  private[vehicle] def updatedAll(
+      measured: Vector[Double],
+      predicted: Vector[Double],
+      noises: Vector[Double]
+  )(
+      effects: Int => Vector[Double]
+  ): ParameterBelief = measured.indices.foldLeft(this): (belief, i) =>
+    val by = effects(i)
+    // The update by an earlier output of this reading already changes the prediction of this output.
+    val explained = belief.mean.lazyZip(mean).map(_ - _).lazyZip(by).map(_ * _).sum
+    belief.updated(by, measured(i) - predicted(i) - explained, noises(i))
+
   /** The estimate after `s` seconds in which each parameter changes by a random walk.
     *
     * @param drifts standard deviations of the changes within a second

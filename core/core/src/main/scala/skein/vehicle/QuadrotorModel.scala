@@ -21,8 +21,7 @@ final class QuadrotorModel(quadrotor: Quadrotor, environment: Environment = Envi
     )
 
   def advanced(flying: Flying, setpoint: Setpoint, span: Span): Flying =
-    val state = QuadrotorState()
-    state.copyFrom(flying.state)
+    val state = flying.state.copy
     val due   = flying.owed + span
     val steps = due.toNanos / step.toNanos
     var done  = 0L
@@ -32,8 +31,7 @@ final class QuadrotorModel(quadrotor: Quadrotor, environment: Environment = Envi
     Flying(state, due - step * steps)
 
   def corrected(flying: Flying, seen: Kinematics, sinceSeen: Span): Flying =
-    val state = QuadrotorState()
-    state.copyFrom(flying.state)
+    val state = flying.state.copy
     state.x = seen.positionNed.x; state.y = seen.positionNed.y; state.z = seen.positionNed.z
     state.vx = seen.velocityNed.x; state.vy = seen.velocityNed.y; state.vz = seen.velocityNed.z
     state.qw = seen.orientation.w; state.qx = seen.orientation.x

@@ -97,12 +97,10 @@ final class TurnBelief[S](model: VehicleModel[S]) extends VehicleModel[TurnBelie
     val drifted    = state.command.drifted(DriftsMps, s, MostOffMps)
     val expected   = drifted.copy(mean = Vector(turned.north, turned.east, turned.down))
     val (cos, sin) = (StrictMath.cos(angle), StrictMath.sin(angle))
-    val explains   = measured.indices.foldLeft(expected): (belief, i) =>
+    val explains   = expected.updatedAll(measured, predicted.head, Noises): i =>
       // The moved commands have turned since.
-      val moved     = Vector(1, 2, 3).map(j => (predicted(j)(i) - predicted.head(i)) / MovedMps)
-      val effects   = Vector(moved(0) * cos - moved(1) * sin, moved(0) * sin + moved(1) * cos, moved(2))
-      val explained = belief.mean.lazyZip(expected.mean).map(_ - _).lazyZip(effects).map(_ * _).sum
-      belief.updated(effects, measured(i) - predicted.head(i) - explained, Noises(i))
+      val moved = Vector(1, 2, 3).map(j => (predicted(j)(i) - predicted.head(i)) / MovedMps)
+      Vector(moved(0) * cos - moved(1) * sin, moved(0) * sin + moved(1) * cos, moved(2))
     // With a larger difference the vehicle tilts as much as it can, and readings do not show the command.
     val command = explains.copy(mean = Vector.tabulate(3): i =>
       explains.mean(i).max(measured(i) - MostOffMps(i)).min(measured(i) + MostOffMps(i)))
