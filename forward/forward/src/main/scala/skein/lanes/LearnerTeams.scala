@@ -6,6 +6,7 @@ import skein.lanes.score.{OfMoment, Scoreboard}
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, Timetables}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
+import skein.units.eachBelow
 
 /** Teams with learners in many worlds by one timetable, with the results of [[TeamBatch]]. Allocates nothing
   * after construction, unless a timetable needs more slots than any before.
@@ -132,10 +133,8 @@ final class LearnerTeams private[lanes] (
   def soFar(number: Int, into: Array[Float]): Unit = scores.soFar(number, into)
 
   def forgetScores(): Unit =
-    var i = 0
-    while i < passing.length do
+    eachBelow(passing.length): i =>
       scores.forget(passing(i))
-      i += 1
 
   def forgetScores(world: Int): Unit =
     for number <- passing do scores.forgetIn(world, number)

@@ -4,7 +4,7 @@ import skein.forward.*
 import skein.lanes.plant.LaneQuadrotors
 import skein.policy.Action
 import skein.simd.LaneMath
-import skein.units.{Quaternion, Vector3}
+import skein.units.{Quaternion, Vector3, eachBelow}
 
 /** Steps the vehicles of many worlds together ([[skein.forward.SteppedVehicles]]), while each world has its
   * own [[Rollout]]. Before each step of physics, every rollout handles the events since the previous step. A
@@ -49,11 +49,9 @@ private final class SteppedRollouts private (
       if Thread.interrupted() then throw InterruptedException()
       val until = steppedTo + stepNs
       flying = 0
-      var world = 0
-      while world < count do
+      eachBelow(count): world =>
         if nextNs(world) < until then nextNs(world) = rollouts(world).flyUntil(until)
         if nextNs(world) != Rollout.Never then flying += 1
-        world += 1
       vehicles.step()
       steppedTo = until
 

@@ -3,7 +3,7 @@ package skein.lanes.plant
 import skein.forward.SteppedVehicles
 import skein.lanes.policy.Directions
 import skein.simd.LaneFunction
-import skein.units.{Quaternion, Vector3}
+import skein.units.{Quaternion, Vector3, eachBelow}
 import skein.vehicle.Quadrotor
 
 /** Simulates quadrotors with their flight controllers, [[LaneQuadrotors.VEHICLES]] at a time, in floats,
@@ -61,10 +61,8 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
     goal(2 * VEHICLES + place) = downM
 
   def command(commanded: Directions, from: Int, speedMps: Float, downM: Float): Unit =
-    var place = 0
-    while place < VEHICLES do
+    eachBelow(VEHICLES): place =>
       command(place, commanded.cos(from + place) * speedMps, commanded.sin(from + place) * speedMps, downM)
-      place += 1
 
   def step(): Unit = fly(1)
 

@@ -3,6 +3,7 @@ package skein.lanes.plant
 import skein.lanes.policy.Directions
 import skein.simd.{BoundFunction, LaneCall}
 import skein.simd.LaneFunction.COUNT as WORLDS
+import skein.units.eachBelow
 
 /** Flights by one plant's [[PlantStages]], in many worlds whose steps begin and end together. Mutable.
   *
@@ -107,10 +108,8 @@ private[lanes] final class StagedFlight(
     tell(time, at + 1)
 
   private def tell(time: Array[Float], at: Int): Unit =
-    var i = 0
-    while i < times do
+    eachBelow(times): i =>
       parameters(firstOfTime + i) = time(at + i)
-      i += 1
 
   private def turnOver(): Unit =
     val before = moving

@@ -5,6 +5,7 @@ import skein.lanes.policy.LaneObservation
 import skein.lanes.timetable.{TimetableAgents, TimetableScores, ViewCall}
 import skein.scenario.Reduction
 import skein.simd.BoundFunction
+import skein.units.eachBelow
 
 /** Scores the flights of many worlds, once a period. Mutable.
   *
@@ -144,11 +145,9 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
 
   /** Computes the times since each world's first decision. */
   private def elapse(runS: Float): Unit =
-    var world = 0
-    while world < worlds do
+    eachBelow(worlds): world =>
       if begunS(world).isNaN then begunS(world) = runS
       sinceS(world) = ScoreLanes.microseconds(runS - begunS(world))
-      world += 1
 
   def hasEnd: Boolean = ending != null
 
@@ -195,12 +194,10 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     while begun < renewed.length && Judged.counts(timeS, judged(renewed(begun)).fromS) do
       renew(renewed(begun), timeS)
       begun += 1
-    var i = 0
-    while i < stage.judged.length do
+    eachBelow(stage.judged.length): i =>
       val number = stage.judged(i)
       counts(number) += 1
       if hasShare(number) then shared(ScoreLanes.ownParameter(number)) = 1f / counts(number)
-      i += 1
     stage.shown.call.apply()
 
   /** Restarts a score in all worlds that have not ended before a time. */

@@ -3,6 +3,7 @@ package skein.lanes.timetable
 import java.util.Arrays
 import skein.lanes.plant.{PlantCorrection, PlantLanes, StagedFlight}
 import skein.lanes.policy.Directions
+import skein.units.eachBelow
 
 /** Predicts with a plant. For each command, the propagation has the number of steps that end under it, and
   * the numbers of the time after the last step ([[skein.lanes.plant.PlantStages]]). If readings lack a part
@@ -105,12 +106,10 @@ private[lanes] final class PredictedPlants(
   /** Simulates from the flight's present state; returns false if no time passes. */
   private def fly(sent: Directions, propagation: Propagation): Boolean =
     val (commands, perPart) = (propagation.commands, propagation.perPart)
-    var i                   = 0
-    while i < commands.length do
+    eachBelow(commands.length): i =>
       val command   = commands(i)
       val commanded = if command == Propagation.Rest then still else sent
       val from      = command.max(0) * WORLDS
       if i == 0 then flight.begin(commanded, from) else flight.act(commanded, from)
       flight.flyTo(propagation.numbers, i * perPart)
-      i += 1
     commands.length > 0

@@ -2,6 +2,7 @@ package skein.lanes.timetable
 
 import skein.lanes.policy.LaneObservation
 import skein.simd.{BoundFunction, LaneCall, LaneFunction}
+import skein.units.eachBelow
 
 /** A call of a function whose inputs are fields of a view, or are read from fixed arrays.
   *
@@ -32,8 +33,7 @@ private[lanes] final class ViewCall(
       show(vehicle, field, array, from + field * LaneFunction.COUNT)
 
   def look(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
-    var i = 0
-    while i < places.length do
+    eachBelow(places.length): i =>
       val vehicle = vehicles(i)
       val body    = all(vehicle).vehicles
       val from    = fields(i) match
@@ -44,4 +44,3 @@ private[lanes] final class ViewCall(
         case 4 => body.seenZ
         case _ => body.seenVz
       call.input(places(i), from, views(view + vehicle) * LaneFunction.COUNT)
-      i += 1

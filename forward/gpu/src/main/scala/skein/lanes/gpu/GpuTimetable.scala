@@ -1,6 +1,7 @@
 package skein.lanes.gpu
 
 import skein.lanes.timetable.{OperationKind, Propagation, Timetable}
+import skein.units.eachBelow
 
 /** Layout of each GPU thread's own memory, in bytes, with the readings and commands of its vehicles.
   *
@@ -69,8 +70,7 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
 
   private def write(): Unit =
     var shown = Nothing
-    var i     = 0
-    while i < timetable.size do
+    eachBelow(timetable.size): i =>
       val kind = timetable.operations(i * Fields)
       val view = timetable.operations(i * Fields + 2)
       // Values that several vehicles compute from a view are computed once.
@@ -79,7 +79,6 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
         record(labels.show)
         field(1, count * view)
       if kind == OperationKind.Predict then predict(i) else operation(kind, i)
-      i += 1
 
   private def record(label: Int): Unit =
     at = records * stride
@@ -112,10 +111,8 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
         record(labels.score)
         field(1, count * place(1))
       case other => throw IllegalArgumentException(s"no GPU knows operations of kind $other")
-    var number = 0
-    while number < timetable.numbers do
+    eachBelow(timetable.numbers): number =>
       time(number, timetable.times(i * timetable.numbers + number))
-      number += 1
 
   private def predict(i: Int): Unit =
     val agent             = timetable.operations(i * Fields + 1)
