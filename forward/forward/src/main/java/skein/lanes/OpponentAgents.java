@@ -14,16 +14,15 @@ import skein.lanes.timetable.TimetableVehicles;
 /** One of two opponents in many worlds: decides by the difference of their readings. */
 final class OpponentAgents extends TimetableAgents implements TeamMember {
   private final LanePolicy policy;
-  private final float[] effort;
+  private final float[] effort = new float[WORLDS];
   private final float startHeading;
   private final int self;
-  private final LaneObservation observation;
+  private final LaneObservation observation = new LaneObservation();
 
   /** The camera that is the vehicle's only source about its opponent; null if it reads the opponent. */
   private final TimetableEye eye;
 
   /** @param self the vehicle's index, 0 or 1
-   * @param effort receives the sums of the heading's changes
    * @param eye the camera that is its only source about its opponent; null if it reads the opponent
    */
   OpponentAgents(
@@ -31,15 +30,11 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
       RolloutAgent agent,
       LaneDynamics model,
       LanePolicy policy,
-      float[] effort,
-      LaneObservation observation,
       TimetableEye eye) {
     super(model.vehicles(agent));
     this.eye = eye;
     this.self = self;
     this.policy = policy;
-    this.effort = effort;
-    this.observation = observation;
     startHeading = (float) agent.startHeadingRad();
   }
 

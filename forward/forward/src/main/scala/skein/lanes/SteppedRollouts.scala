@@ -4,7 +4,7 @@ import skein.forward.*
 import skein.lanes.plant.LaneQuadrotors
 import skein.policy.Action
 import skein.simd.LaneMath
-import skein.units.{Quaternion, Vector3, eachBelow}
+import skein.units.eachBelow
 
 /** Steps the vehicles of many worlds together ([[skein.forward.SteppedVehicles]]), while each world has its
   * own [[Rollout]]. Before each step of physics, every rollout handles the events since the previous step. A
@@ -80,19 +80,9 @@ private final class SteppedRollouts private (
         vehicles.command(place, north.toFloat, east.toFloat, down)
       case other => throw UnsupportedOperationException(s"this vehicle does not perform $other")
 
-    def advance(timeS: Double): Unit = sinceStepS = (Nanos.of(timeS) - steppedTo) * 1e-9
-
-    protected def stepX: Double               = vehicles.x(place)
-    protected def stepY: Double               = vehicles.y(place)
-    protected def stepZ: Double               = vehicles.z(place)
-    protected def stepVx: Double              = vehicles.vx(place)
-    protected def stepVy: Double              = vehicles.vy(place)
-    protected def stepVz: Double              = vehicles.vz(place)
-    protected def stepAx: Double              = vehicles.ax(place)
-    protected def stepAy: Double              = vehicles.ay(place)
-    protected def stepAz: Double              = vehicles.az(place)
-    protected def orientation: Quaternion     = vehicles.orientation(place)
-    protected def angularVelocityFrd: Vector3 = vehicles.angularVelocityFrd(place)
+    def advance(timeS: Double): Unit =
+      vehicles.read(place, state)
+      sinceStepS = (Nanos.of(timeS) - steppedTo) * 1e-9
 
 private object SteppedRollouts:
   /** Creates rollouts for these vehicles; None if they cannot be stepped together. */

@@ -36,9 +36,6 @@ private[skein] final class FixedFormula private (
 
   private[skein] val parameters: Array[Double] = parametersOf(of)
 
-  /** Reorders the method's inputs to those of [[bound]]. */
-  private[skein] def inputsOf(own: Array[Double]): Array[Double] = bound.inputs.map(own(_))
-
   def call: FixedFormula.Call = call(of)
 
   def call(other: AnyRef): FixedFormula.Call =

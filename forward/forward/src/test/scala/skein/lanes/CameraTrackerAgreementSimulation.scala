@@ -205,8 +205,8 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
     Option.when(isFound != lanes.isFound):
       val detected = lanes.by.detected
       val shown    = Seq(detected.bound.nodes(0))
-      val inputs   = detected.inputsOf(doubles)
-      val off      = inputs.zip(detected.inputsOf(floats)).map((x, y) => math.abs(x - y))
+      val inputs   = detected.bound.inputs.map(doubles(_))
+      val off      = inputs.zip(detected.bound.inputs.map(floats(_))).map((x, y) => math.abs(x - y))
       // The number drawn is exact; beyond the probability of detection nothing is found.
       val drawn = scalar.found < camera.detection
       val near  =

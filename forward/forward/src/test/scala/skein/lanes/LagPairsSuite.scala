@@ -11,7 +11,7 @@ import skein.forward.{
   VelocityResponse,
   VelocityResponses
 }
-import skein.lanes.policy.LanePolicy
+import skein.lanes.LanePolicies.take
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
@@ -41,7 +41,7 @@ class LagPairsSuite extends munit.FunSuite:
       shortCut: Boolean = true,
       order: Array[Int] = Array.range(0, worlds)
   ): PairKernel =
-    val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
+    val (pursuers, evaders) = (LanePolicies.of(PaperPursuer()), LanePolicies.of(PaperEvader()))
     for (of, world) <- order.zipWithIndex do
       pursuers.take(world, PaperPursuer(turnRates(of)))
       evaders.take(world, PaperEvader(radii(of)))

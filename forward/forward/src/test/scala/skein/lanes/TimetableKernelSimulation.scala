@@ -13,7 +13,7 @@ import skein.forward.{
   VelocityResponses
 }
 import skein.identify.Tilting
-import skein.lanes.policy.LanePolicy
+import skein.lanes.LanePolicies.take
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
@@ -51,7 +51,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
       durationS: Double,
       model: VelocityResponse
   ): PairKernel =
-    val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
+    val (pursuers, evaders) = (LanePolicies.of(PaperPursuer()), LanePolicies.of(PaperEvader()))
     for world <- 0 until worlds do
       pursuers.take(world, pursuer(world))
       evaders.take(world, evader(world))

@@ -116,39 +116,30 @@ private[lanes] final class StagedFlight(
     moving = other
     other = before
 
+  /** Writes the present position and, if it is wanted or the flight is in space, velocity.
+    *
+    * @param into index of the first world
+    */
   def look(
-      x: Array[Float],
-      y: Array[Float],
-      vx: Array[Float],
-      vy: Array[Float],
-      into: Int,
-      withVelocity: Boolean
-  ): Unit =
-    val look = if withVelocity then moving.look else moving.position
-    look.output(0, x, into)
-    look.output(1, y, into)
-    if withVelocity then
-      look.output(2, vx, into)
-      look.output(3, vy, into)
-    look()
-
-  /** Writes the present position and velocity in space. */
-  def lookInSpace(
       x: Array[Float],
       y: Array[Float],
       vx: Array[Float],
       vy: Array[Float],
       z: Array[Float],
       vz: Array[Float],
-      into: Int
+      into: Int,
+      withVelocity: Boolean
   ): Unit =
-    val look = moving.look
+    val moves = withVelocity || lanes.inSpace
+    val look  = if moves then moving.look else moving.position
     look.output(0, x, into)
     look.output(1, y, into)
-    look.output(2, vx, into)
-    look.output(3, vy, into)
-    look.output(4, z, into)
-    look.output(5, vz, into)
+    if moves then
+      look.output(2, vx, into)
+      look.output(3, vy, into)
+    if lanes.inSpace then
+      look.output(4, z, into)
+      look.output(5, vz, into)
     look()
 
   /** Writes the present state in rows.

@@ -3,7 +3,7 @@ package skein.lanes.score
 import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
 import skein.lanes.timetable.OwnEnds
 import skein.policy.PolicyInput
-import skein.scenario.{EndFormula, OwnEnd, Positions, Quantity, Reduction, Separation}
+import skein.scenario.{EndFormula, OwnEnd, Positions, Quantity, Reduction}
 import skein.simd.{BoundFunction, Forms}
 import skein.units.Expect
 
@@ -291,13 +291,6 @@ private[lanes] object ScoreLanes:
     case _: Reduction if count == 0   => Float.NaN
     case Reduction.TimePositive       => (kept * of.everyS).toFloat
     case _                            => kept
-
-  /** Scores the distance between two vehicles.
-    *
-    * @param by reductions of the distance, each with the time from which values count, s
-    */
-  def ofDistance(by: (Reduction | OfMoment, Double)*): ScoreLanes =
-    of(by.toVector.map(Judged(Separation, _, _)), 2).fold(throw _, identity)
 
   private def formulaOf(quantity: Quantity, vehicles: Int): Either[Untraceable, Formula] =
     // A user's quantity may have any name for its argument.

@@ -3,7 +3,6 @@ package skein.lanes.score
 import java.util.Arrays
 import skein.lanes.policy.LaneObservation
 import skein.lanes.timetable.{TimetableAgents, TimetableScores, ViewCall}
-import skein.scenario.Reduction
 import skein.simd.BoundFunction
 import skein.units.eachBelow
 
@@ -113,6 +112,9 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     counts(number) = 0
     for place <- lanes.places(number) until lanes.places(number + 1) do begin(place)
 
+  /** The time up to which positions are scored, s. */
+  var untilS: Float = Float.PositiveInfinity
+
   /** Resets one world's score. The count of values goes on, so final means and standard deviations are then
     * wrong.
     */
@@ -121,7 +123,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
       kept(place * worlds + world) = lanes.initial(place)
 
   def score(agents: Array[TimetableAgents], views: Array[Int], view: Int, timeS: Float): Unit =
-    val stage = stageAt(timeS)
+    val stage = if timeS <= untilS then stageAt(timeS) else null
     if stage != null then
       stage.shown.look(agents, views, view)
       add(stage, timeS)
@@ -224,11 +226,3 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   def value(number: Int, world: Int): Float =
     val count = lanes.counted(number).fold(counts(number))(place => kept(place * worlds + world).toInt)
     ScoreLanes.value(judged(number), soFar(number, world), count)
-
-private[lanes] object Scoreboard:
-  /** Scores the distance between two vehicles.
-    *
-    * @param by reductions of the distance, each with the time from which values count, s
-    */
-  def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard =
-    Scoreboard(ScoreLanes.ofDistance(by*), Vector(0, 0))

@@ -88,8 +88,7 @@ private[lanes] final class PredictedPlants(
       for seen <- Array(seenX, seenY, seenVx, seenVy) do System.arraycopy(seen, reading, seen, into, WORLDS)
       if lanes.inSpace then
         for seen <- Array(seenZ, seenVz) do System.arraycopy(seen, reading, seen, into, WORLDS)
-    else if lanes.inSpace then flight.lookInSpace(seenX, seenY, seenVx, seenVy, seenZ, seenVz, into)
-    else flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
+    else flight.look(seenX, seenY, seenVx, seenVy, seenZ, seenVz, into, withVelocity)
 
   /** Corrects the simulated state with a reading. */
   private def take(read: TimetableReadings, reading: Int, into: Array[Float], at: Int): Unit =

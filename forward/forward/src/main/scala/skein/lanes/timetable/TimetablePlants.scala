@@ -32,11 +32,9 @@ private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLane
   def look(times: Array[Float], at: Int, into: Int, withVelocity: Boolean): Unit =
     if isCommanded then
       flight.flyTo(times, at)
-      if lanes.inSpace then flight.lookInSpace(seenX, seenY, seenVx, seenVy, seenZ, seenVz, into)
-      else
-        flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
-        // The slot has the errors of an earlier reading.
-        if amongClimbers then lookLevel(into)
+      flight.look(seenX, seenY, seenVx, seenVy, seenZ, seenVz, into, withVelocity)
+      // The slot has the errors of an earlier reading.
+      if amongClimbers && !lanes.inSpace then lookLevel(into)
     else
       if lanes.inSpace || amongClimbers then lookLevel(into)
       for world <- 0 until WORLDS do
