@@ -100,7 +100,7 @@ object WholeFlights:
           Instant.ofNanos(0) + Span.ofSeconds(timeS),
           Vector3(x, y, z)
         )): Unit
-    Rollout(flown, timing, link, response).fly(WorldRandom.key(seed, 0, episode), observer = observer): Unit
+    Rollout(flown, timing, link, response).fly(WorldRandom.key(seed, 0, episode), observer = observer)
     Tracks
       .of(agents.zip(samples).map((agent, places) =>
         Track.ofPositions(agent.name, agent.role.name, places.result())

@@ -33,7 +33,8 @@ private[skein] class PairAgreement(
       val logs   = policies.map(of => Log(of(world)))
       val events = Events()
       val scalar = duel.copy(duel.pursuer.copy(policy = logs(1)), duel.evader.copy(policy = logs(0)))
-      val came   = Rollout(scalar.engagement, timing, link(world), model).fly(key(world), captureM, events)
+      val came   =
+        ScoredRollout(scalar.engagement, timing, link(world), model).fly(key(world), captureM, events)
       // The errors of directions so far, each within its bound.
       var off   = 0.0
       val first = events.all.iterator

@@ -7,7 +7,7 @@ import skein.forward.{
   LinkDelays,
   LoopTiming,
   PlantResponse,
-  Rollout,
+  ScoredRollout,
   Steering,
   VelocityResponse,
   VelocityResponses
@@ -104,7 +104,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
         val key    = WorldRandom.key(3, 1, episode)
         val kernel = fly(timing, link, key, 5, model)
         for world <- 0 until worlds by 3 do
-          val scalar = Rollout(duel(world, 5).engagement, timing, link, model).fly(key, captureM)
+          val scalar = ScoredRollout(duel(world, 5).engagement, timing, link, model).fly(key, captureM)
           all += 1
           if (kernel(PairNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
             (kernel(PairNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&
