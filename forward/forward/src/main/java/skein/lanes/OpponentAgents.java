@@ -113,12 +113,9 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
     TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
         opponentSeen = views[view + 1 - self] * WORLDS;
-    observation.see(LaneObservation.X, theirs.seenX, opponentSeen, ours.seenX, ownSeen);
-    observation.see(LaneObservation.Y, theirs.seenY, opponentSeen, ours.seenY, ownSeen);
-    if (needsVelocity()) {
-      observation.see(LaneObservation.VX, theirs.seenVx, opponentSeen, ours.seenVx, ownSeen);
-      observation.see(LaneObservation.VY, theirs.seenVy, opponentSeen, ours.seenVy, ownSeen);
-    }
+    int count = needsVelocity() ? LaneObservation.READ : LaneObservation.VX;
+    for (int what = 0; what < count; what++)
+      observation.see(what, theirs.seen[what], opponentSeen, ours.seen[what], ownSeen);
     Arrays.fill(observation.elapsed, times[number]);
     if (policy.needsAges()) {
       Arrays.fill(observation.ownAge, times[number + 1]);
@@ -132,8 +129,8 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
     observation.seeFromOwn(LaneObservation.X, eye.northM());
     observation.seeFromOwn(LaneObservation.Y, eye.eastM());
     if (needsVelocity()) {
-      observation.see(LaneObservation.VX, eye.northMps(), 0, vehicles.seenVx, ownSeen);
-      observation.see(LaneObservation.VY, eye.eastMps(), 0, vehicles.seenVy, ownSeen);
+      observation.see(LaneObservation.VX, eye.northMps(), 0, vehicles.seen[LaneObservation.VX], ownSeen);
+      observation.see(LaneObservation.VY, eye.eastMps(), 0, vehicles.seen[LaneObservation.VY], ownSeen);
     }
     Arrays.fill(observation.elapsed, times[number]);
     Arrays.fill(observation.ownAge, times[number + 1]);

@@ -40,7 +40,12 @@ final class Rollout private[skein] (
   )
   for agent <- trackers.indices do world.views(agent) = trackers(agent)
 
-  private val loop     = LoopRuns.of(timing, world)
+  private val loop = timing match
+    case paused: LoopTiming.Paused         => PausedRun(paused, world)
+    case sequential: LoopTiming.Sequential => SequentialRun(sequential, world)
+    case futures: LoopTiming.Futures       => FuturesRun(futures, world)
+    case stream: LoopTiming.Stream         => StreamRun(stream, world)
+    case predictive: LoopTiming.Predictive => PredictiveRun(predictive, world)
   private val periodNs = Nanos.of(timing.periodS)
   private val scores   = (engagement.durationS / timing.periodS).round.toInt
   private var scored   = 0

@@ -87,24 +87,15 @@ private final class SteppedRollouts private (
 private object SteppedRollouts:
   /** Creates rollouts for these vehicles; None if they cannot be stepped together. */
   def of(model: VelocityResponse, vehicles: Vector[RolloutAgent]): Option[SteppedRollouts] =
-    val each = vehicles.size
+    val each   = vehicles.size
+    val worlds = worldsOf(model, each)
     model.body match
       case stepped: SteppedResponse =>
-        val worlds = worldsOf(model, each)
-        val flown  = stepped.together(worlds * each)
+        val flown = stepped.together(worlds * each)
         Some(new SteppedRollouts(model, stepped.stepS, stepped.hoveredS, worlds, each, flown))
-      case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
-        val worlds = worldsOf(model, each)
-        Some(
-          new SteppedRollouts(
-            model,
-            quadrotor.quadrotor.stepS,
-            quadrotor.hoveredS,
-            worlds,
-            each,
-            LaneQuadrotors.of(quadrotor.quadrotor).fold(sys.error, identity)
-          )
-        )
+      case of: QuadrotorResponse if fliesByLanes(of, vehicles) =>
+        val flown = LaneQuadrotors.of(of.quadrotor).fold(sys.error, identity)
+        Some(new SteppedRollouts(model, of.quadrotor.stepS, of.hoveredS, worlds, each, flown))
       case _ => None
 
   /** The engine for such vehicles; None if they cannot be stepped together. */

@@ -251,10 +251,10 @@ private object CameraTrackerAgreement:
           times(at),
           inputs(
             axis(world),
-            ours.seenX(we),
-            ours.seenY(we),
-            theirs.seenX(they),
-            theirs.seenY(they),
+            ours.seen(0)(we),
+            ours.seen(1)(we),
+            theirs.seen(0)(they),
+            theirs.seen(1)(they),
             own.altitudeDownM
           ),
           shown(world) > 0

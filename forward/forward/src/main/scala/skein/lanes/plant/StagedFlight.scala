@@ -1,6 +1,6 @@
 package skein.lanes.plant
 
-import skein.lanes.policy.Directions
+import skein.lanes.policy.{Directions, LaneObservation}
 import skein.simd.{BoundFunction, LaneCall}
 import skein.simd.LaneFunction.COUNT as WORLDS
 import skein.units.eachBelow
@@ -118,28 +118,14 @@ private[lanes] final class StagedFlight(
 
   /** Writes the present position and, if it is wanted or the flight is in space, velocity.
     *
+    * @param seen by component of a reading ([[LaneObservation]])
     * @param into index of the first world
     */
-  def look(
-      x: Array[Float],
-      y: Array[Float],
-      vx: Array[Float],
-      vy: Array[Float],
-      z: Array[Float],
-      vz: Array[Float],
-      into: Int,
-      withVelocity: Boolean
-  ): Unit =
+  def look(seen: Array[Array[Float]], into: Int, withVelocity: Boolean): Unit =
     val moves = withVelocity || lanes.inSpace
     val look  = if moves then moving.look else moving.position
-    look.output(0, x, into)
-    look.output(1, y, into)
-    if moves then
-      look.output(2, vx, into)
-      look.output(3, vy, into)
-    if lanes.inSpace then
-      look.output(4, z, into)
-      look.output(5, vz, into)
+    for i <- 0 until (if moves then stages.look.outputs else LaneObservation.VX) do
+      look.output(i, seen(i), into)
     look()
 
   /** Writes the present state in rows.

@@ -35,12 +35,4 @@ private[lanes] final class ViewCall(
   def look(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
     eachBelow(places.length): i =>
       val vehicle = vehicles(i)
-      val body    = all(vehicle).vehicles
-      val from    = fields(i) match
-        case 0 => body.seenX
-        case 1 => body.seenY
-        case 2 => body.seenVx
-        case 3 => body.seenVy
-        case 4 => body.seenZ
-        case _ => body.seenVz
-      call.input(places(i), from, views(view + vehicle) * LaneFunction.COUNT)
+      call.input(places(i), all(vehicle).vehicles.seen(fields(i)), views(view + vehicle) * LaneFunction.COUNT)
