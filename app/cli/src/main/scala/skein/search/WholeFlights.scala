@@ -56,13 +56,10 @@ object WholeFlights:
     */
   val Never = 1e6
 
-  /** @return the weighted sum of a flight's measures; None if one has no value. A time that is never reached
-    *   counts as the duration, as in [[ScenarioTerm.value]].
-    */
+  /** @return the weighted sum of a flight's measures; None if one has no value */
   def sum(terms: Vector[(Double, Measure)], flown: Tracks, durationS: Double): Option[Double] =
     val values = terms.flatMap: (weight, measure) =>
-      val never = Option.when(measure.reduced.exists(_.reduction.mayBeNever))(durationS)
-      measure.of(flown).orElse(never).map(weight * _)
+      measure.of(flown).orElse(ScenarioTerm.never(measure, durationS)).map(weight * _)
     Option.when(values.size == terms.size)(values.sum)
 
   /** Maximum number of flights in virtual time in one search: a day of them, at one a second. */
