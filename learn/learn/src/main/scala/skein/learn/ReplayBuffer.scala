@@ -12,14 +12,20 @@ final class ReplayBuffer(observations: Int, actions: Int, capacity: Int) extends
 
   def size: Int = held
 
-  /** Adds a transition from a row of each array. */
-  def add(seen: Array[Float], chosen: Array[Float], task: Task): Unit =
-    eachBelow(task.count): row =>
+  /** Adds transitions, each from a row of each array. */
+  def add(
+      seen: Array[Float],
+      chosen: Array[Float],
+      reached: Array[Float],
+      rewards: Array[Float],
+      terminated: Array[Boolean]
+  ): Unit =
+    eachBelow(rewards.length): row =>
       System.arraycopy(seen, row * observations, all.seen, next * observations, observations)
       System.arraycopy(chosen, row * actions, all.actions, next * actions, actions)
-      System.arraycopy(task.reached, row * observations, all.reached, next * observations, observations)
-      all.rewards(next) = task.rewards(row)
-      all.goesOn(next) = if task.terminated(row) then 0 else 1
+      System.arraycopy(reached, row * observations, all.reached, next * observations, observations)
+      all.rewards(next) = rewards(row)
+      all.goesOn(next) = if terminated(row) then 0 else 1
       next = if next + 1 == capacity then 0 else next + 1
       held = (held + 1).min(capacity)
 
