@@ -113,13 +113,13 @@ object Packaging {
     IO.delete((home * "*").get.filterNot(isLinked && _ == runtime))
     IO.createDirectory(lib)
     (stage / "lib" * "*.jar").get.foreach(copyJar(_, lib))
-    run(home, java, "-XX:+UseSerialGC", "-cp", agent.getPath, "skein.vtime.agent.RewriteJars", lib.getPath)
+    val brief = Seq(java, "-XX:+UseSerialGC", "-XX:TieredStopAtLevel=1")
+    run(home, brief ++ Seq("-cp", agent.getPath, "skein.vtime.agent.RewriteJars", lib.getPath): _*)
     if (!isLinked) {
       val exports = Seq("internal", "plugin").flatMap(part => Seq("--add-exports", s"jdk.jlink/jdk.tools.jlink.$part=ALL-UNNAMED"))
       run(
         home,
-        (java +: "-XX:+UseSerialGC" +: "-XX:TieredStopAtLevel=1" +: "--add-modules=jdk.jlink" +: exports) ++
-          (linker.getPath +: options) ++ Seq("--output", runtime.getPath): _*
+        (brief :+ "--add-modules=jdk.jlink") ++ exports ++ (linker.getPath +: options) ++ Seq("--output", runtime.getPath): _*
       )
       IO.write(remembered, wanted)
     }
@@ -142,16 +142,14 @@ object Packaging {
     val classPath = jars.map(_.getPath).mkString(":")
     val aot       = (lib / "skein.aot").getPath
     val program   = (runtime / "bin" / "java").getPath +: (Jvm.nativeAccess ++ vectors ++ Jvm.control) :+ "-cp" :+ classPath
+    val answers   = lib / "answers"
+    IO.createDirectory(answers)
     IO.withTemporaryDirectory { folder =>
-      val cache = program :+ s"-XX:AOTCacheOutput=$aot"
+      val cache  = program :+ s"-XX:AOTCacheOutput=$aot"
+      val status = Process(cache ++ Seq("skein.cli.Rehearsal", (sources / "rehearsed").getPath, answers.getPath), folder).!(log)
       // What a busy machine did not fly is slower to start, no more.
-      val status = Process(cache :+ "skein.cli.Rehearsal" :+ (sources / "rehearsed").getPath, folder).!(log)
       if (status != 0) log.warn("not all commands of the rehearsal ended well")
       if (!file(aot).exists) sys.error("the rehearsal made no ahead-of-time cache")
-    }
-    for (words <- Seq("--version", "--help", "completion bash", "completion zsh")) {
-      val answer = lib / "answers" / words.split("[ -]+").last
-      IO.write(answer, Process(program ++ (s"-XX:AOTCache=$aot" +: "skein.cli.Main" +: words.split(' ').toSeq)).!!(log))
     }
     home
   }

@@ -121,6 +121,18 @@ def test_java_is_started_once_by_many_threads():
     assert len(started) == 16 and all(module.isJVMStarted() for module in started)
 
 
+def test_python_ends_if_another_thread_started_java():
+    script = """
+import threading
+from skein_uav import jvm
+thread = threading.Thread(target=lambda: print(jvm.start().java.lang.Thread.currentThread().isDaemon()))
+thread.start()
+thread.join()
+"""
+    ended = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, timeout=300)
+    assert (ended.returncode, ended.stdout) == (0, "True\n")
+
+
 @pytest.mark.parametrize("mode", list(AutoresetMode))
 def test_episodes_end_and_begin_as_gymnasium_says(make, mode):
     env = make(16, autoreset_mode=mode, capture_radius_m=5, start_within_m=(7, 9), link="direct", episode_s=10)

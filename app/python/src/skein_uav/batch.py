@@ -132,10 +132,7 @@ class InProcess:
     def step(self) -> None:
         if jvm._forked:
             jvm.start()
-        try:
-            self._step()
-        except self._jpype.JException as mistake:
-            raise _translated(mistake) from None
+        self._told(self._step)
 
     def close(self) -> None:
         self._batch.close()
@@ -147,9 +144,5 @@ class InProcess:
         try:
             return call()
         except self._jpype.JException as mistake:
-            raise _translated(mistake) from None
-
-
-def _translated(mistake: Any) -> Exception:
-    message = str(mistake.getMessage())
-    return ValueError(message) if mistake.getClass().getSimpleName() == "IllegalArgumentException" else SkeinError(message)
+            is_users = mistake.getClass().getSimpleName() == "IllegalArgumentException"
+            raise (ValueError if is_users else SkeinError)(str(mistake.getMessage())) from None

@@ -191,7 +191,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         self.single_action_space = action_space(climb_mps > 0)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        texts = {
+        given = {
             "learners": learner,
             "opponent": opponent,
             "loop": loop,
@@ -202,15 +202,15 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             "altitude_m": altitude_m,
             "episode_s": episode_s,
             "capture_radius_m": capture_radius_m,
-            **starts(start_within_m),
+            "start_within_m": start_within_m,
             "moves_in_flight": moves_in_flight,
             "scenario": scenario,
+            "settings": settings,
             "objective": objective,
             "turn_rate_rad_per_s": turn_rate_rad_per_s,
             "climb_mps": climb_mps,
         }
-        texts |= {f"set.{name}": value for name, value in arguments.texts(settings).items()}
-        self._backend = open_batch(texts, num_envs, self.autoreset_mode, backend)
+        self._backend = open_batch(given, num_envs, self.autoreset_mode, backend)
         self._block = self._backend.block
         if len(self._backend.learners) > 1:
             self._backend.close()
@@ -374,7 +374,9 @@ class PursuitEnv(gym.Env[Floats, Floats]):
 
 
 def open_batch(settings: dict[str, Any], count: int, autoreset: AutoresetMode, backend: str) -> Backend:
-    """Opens a batch with its shared memory."""
+    """Opens a batch with its shared memory; its settings are `learners` and parameters of `PursuitVectorEnv`."""
+    own = {f"set.{name}": value for name, value in arguments.texts(settings.pop("settings")).items()}
+    settings |= own | _starts(settings.pop("start_within_m", (0.0, 0.0)))
     altitude_m = settings.get("altitude_m")
     if altitude_m is not None and not altitude_m > 0:
         raise ValueError(f"altitude_m: expected more than 0 m, got {altitude_m!r}")
@@ -395,7 +397,7 @@ def open_batch(settings: dict[str, Any], count: int, autoreset: AutoresetMode, b
     raise ValueError(f"backend: expected 'process', 'socket' or 'unix:PATH', got {backend!r}")
 
 
-def starts(within_m: Any) -> dict[str, Any]:
+def _starts(within_m: Any) -> dict[str, Any]:
     """The settings of ``start_within_m``."""
     try:
         least_m, most_m = within_m

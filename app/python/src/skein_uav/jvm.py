@@ -79,6 +79,8 @@ def start() -> Any:
                 interrupt=True,  # else JPype has handlers of its own, which report Ctrl-C late and crash by SIGTERM
             )
             os.register_at_fork(after_in_child=_fork)
+            # Java would wait for the end of the thread that started it; its next call attaches it as a daemon.
+            jpype.java.lang.Thread.detach()
     return jpype
 
 

@@ -20,9 +20,8 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
-from . import arguments
 from .batch import Floats
-from .environments import action_space, observation_space, open_batch, seeds_of, starts
+from .environments import action_space, observation_space, open_batch, seeds_of
 from .errors import SkeinError
 from .pictures import picture
 
@@ -64,9 +63,8 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
     ) -> None:
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: expected None or 'rgb_array', got {render_mode!r}")
-        texts = {"scenario": scenario, "learners": learners, **starts(others.pop("start_within_m", (0.0, 0.0)))}
-        texts |= {f"set.{name}": value for name, value in arguments.texts(settings).items()}
-        self._backend = open_batch(texts | others, 1, AutoresetMode.DISABLED, backend)
+        given = {"scenario": scenario, "learners": learners, "settings": settings, **others}
+        self._backend = open_batch(given, 1, AutoresetMode.DISABLED, backend)
         self._block = self._backend.block
         self.engine = self._backend.engine()
         names = self._backend.learners

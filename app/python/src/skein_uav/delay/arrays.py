@@ -41,10 +41,8 @@ def put(array: Any, slot: slice, value: Any) -> Any:
     return array
 
 
-def copied(array: Any) -> Any:
-    """A copy; arrays of JAX are immutable and returned as they are."""
-    if type(array) is np.ndarray:
-        return array.copy("K")
+def apart(array: Any) -> Any:
+    """The array, or a copy if assigning it to an overlapping slice requires one, as with PyTorch."""
     return array.clone() if hasattr(array, "is_cuda") else array
 
 
@@ -55,35 +53,6 @@ def changed(array: Any, mask: Any, value: Any) -> Any:
     array = array.copy("K")
     array[mask] = value[mask]
     return array
-
-
-def repeated(one: Any, number: int) -> Any:
-    """Equal rows for each environment, shape (environments, rows, …), but (rows, …, environments) with NumPy."""
-    if type(one) is not np.ndarray:
-        return namespace(one).stack([one] * number, 1)
-    return np.stack([np.moveaxis(one, 0, -1)] * number)
-
-
-def followed(rows: Any, newest: Any) -> Any:
-    """Rows as of `repeated`, moved on by a new last one; those of NumPy in place."""
-    if type(rows) is not np.ndarray:
-        return namespace(rows).concatenate([rows[:, 1:], newest[:, None]], 1)
-    rows[:-1] = rows[1:]
-    rows[-1] = newest.T if newest.ndim <= 2 else np.moveaxis(newest, 0, -1)
-    return rows
-
-
-def replaced(rows: Any, flags: Any, value: Any) -> Any:
-    """Rows as of `repeated`, with other ones' values in the environments whose flags are set; those of NumPy in place."""
-    if type(rows) is not np.ndarray:
-        return changed(rows, flags, value)
-    np.copyto(rows, value, where=flags.astype(np.bool_, copy=False))
-    return rows
-
-
-def by_environment(rows: Any) -> Any:
-    """Rows as of `repeated`, shape (environments, rows, …)."""
-    return np.moveaxis(rows, -1, 0).copy() if type(rows) is np.ndarray else rows
 
 
 def beside(flags: Any, array: Any) -> Any:

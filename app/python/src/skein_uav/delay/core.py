@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Tree, beside, by_environment, cast, copied, each, followed, leaf, namespace, on, repeated, replaced
+from .arrays import Tree, beside, cast, each, leaf, namespace, on
 from .history import History
+from .pending import OneHot, Pending, PendingElsewhere, PendingOneHot
 from .profiles import Trace, delays
 from .schedule import MOST_ROWS, Schedule, spawned
 
@@ -103,8 +104,8 @@ class Delay:
     longest_age_s : float
         Greatest age of an observation, s.
     spare : int
-        If observations are NumPy matrices and not predicted, the number of columns that follow them in `Seen`: the age and
-        the pending decisions, or 0. To be set before the first observation.
+        If not 0, observations that are NumPy matrices and not predicted are followed by so many columns, the age and the
+        pending decisions, and this matrix is returned instead of `Seen`. To be set before the first observation.
 
     Raises
     ------
@@ -193,7 +194,7 @@ class Delay:
         seed: Sequence[int | None] | None = None,
         line: int = 0,
         actions: Tree = None,
-    ) -> Seen:
+    ) -> Seen | np.ndarray:
         """Begins episodes with these observations; no time passes.
 
         Parameters
@@ -258,13 +259,16 @@ class Delay:
             self._actions.put(at + 1, actions)
             if self._pending:
                 newest = actions if self._encode is None else self._encode(actions)
-                self._told = each(followed, self._told, newest)
+                if self._has_room:  # then they are one array
+                    self._told.add(newest)
+                else:
+                    each(lambda told, one: told.add(one), self._told, newest)
         if self._is_shared:
             return self._mean(at)
         rows = self._actions.rows
         return rows.take(self._newest[1], 0) if type(rows) is np.ndarray else self._actions.take(self._newest[1])
 
-    def seen(self, observations: Tree, began: Any = None) -> Seen:
+    def seen(self, observations: Tree, began: Any = None) -> Seen | np.ndarray:
         """Takes the observations after a step; returns the policy's input.
 
         Parameters
@@ -295,10 +299,12 @@ class Delay:
                 self._actions.rows[places] = self._idles[which]
             else:
                 self._actions.put_where(which, at, self._idles)
-            if self._pending:
-                self._told = each(lambda told, idle: replaced(told, flags, idle), self._told, self._idles_told)
+            if self._pending and self._has_room:
+                self._told.void(which)
+            elif self._pending:
+                each(lambda told: told.void(which), self._told)
 
-    def _look(self, at: int) -> Seen:
+    def _look(self, at: int) -> Seen | np.ndarray:
         arrived = self._arrived[at]
         if self._of_links is not None:  # environments beyond the links share them in turns
             arrived = (arrived + self._of_links).reshape(2, -1)[:, : self._count]
@@ -306,28 +312,32 @@ class Delay:
         newest = self._newest[0]
         # The table ends with ages of 0: those of this row.
         ages = self._ages[(self._room - 1 - at) * self._count :]
+        has = arrived[0] >= self._began if self._is_zero else None
         if self._has_room:
-            columns = self._observations.rows.T
-            width = len(columns)
-            taken = np.empty((width + self.spare, self._count), columns.dtype)
-            columns.take(newest, 1, taken[:width], "clip")  # else ``out`` is copied
-            if self._is_zero:
-                taken[:width, arrived[0] < self._began] = 0
-            if ages.dtype != taken.dtype:
-                self._ages = self._table().astype(taken.dtype)
-                ages = self._ages[-len(ages) :]
-            ages.take(newest, 0, taken[width], "clip")
-            if self._pending:
-                taken[width + 1 :] = self._told.reshape(-1, self._count)
-            return Seen(taken.T, taken[width], None)
+            return self._joined(newest, ages, has)
         observation = self._observations.take(newest)
-        if self._is_zero:
-            has = arrived[0] >= self._began
+        if has is not None:
             observation = each(lambda one: self._xp.where(beside(has, one), one, self._xp.zeros_like(one)), observation)
         if self._predict is not None:
             observation = self._predicted(observation, (self._row(at) - newest) // self._count, at)
         age_s = ages.take(newest) if self._xp is np else ages[newest]
-        return Seen(observation, age_s, each(by_environment, self._told) if self._pending else None)
+        return Seen(observation, age_s, each(lambda told: told.by_environment(), self._told) if self._pending else None)
+
+    def _joined(self, newest: np.ndarray, ages: np.ndarray, has: np.ndarray | None) -> np.ndarray:
+        """The observation, its age and the pending decisions as one matrix, of which each column is contiguous."""
+        columns = self._observations.rows.T
+        width = len(columns)
+        joined = np.empty((width + self.spare, self._count), columns.dtype)
+        columns.take(newest, 1, joined[:width], "clip")  # else ``out`` is copied
+        if has is not None:
+            joined[:width, ~has] = 0
+        if ages.dtype != joined.dtype:
+            self._ages = self._table().astype(joined.dtype)
+            ages = self._ages[-len(ages) :]
+        ages.take(newest, 0, joined[width], "clip")
+        if self._pending:
+            joined[width + 1 :] = self._told.columns()
+        return joined.T
 
     def _table(self) -> Any:
         """Ages by history index, at the last row."""
@@ -378,10 +388,12 @@ class Delay:
 
         self._idles = each(filled, actions, idles)
         self._actions = History(self._idles, self._kept, self._room + 1, self._count)
-        if self._pending:
+        if self._pending and self._xp is np and isinstance(self._encode, OneHot):
+            self._told, self._encode = PendingOneHot(self._idles, self._pending, self._encode), None
+        elif self._pending:
             idles = self._idles if self._encode is None else self._encode(self._idles)
-            self._idles_told = each(lambda one: repeated(one, self._pending), idles)
-            self._told = each(copied, self._idles_told)
+            kind = Pending if self._xp is np else PendingElsewhere
+            self._told = each(lambda one: kind(one, self._pending), idles)
 
     def _rows_at_once(self, observations: Tree) -> int:
         """How many rows histories take before old ones are forgotten."""

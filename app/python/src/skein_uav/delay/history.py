@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Tree, cast, changed, copied, each, leaf, namespace, put
+from .arrays import Tree, apart, cast, changed, each, leaf, namespace, put
 
 
 class History:
@@ -67,7 +67,7 @@ class History:
         if number:
             old = self._slot(number - self._kept, min(number + 1, self._length - self._kept))
             new = slice(0, old.stop - old.start)
-            self._hold(each(lambda rows: put(rows, new, copied(rows[old])), self.rows))  # they overlap
+            self._hold(each(lambda rows: put(rows, new, apart(rows[old])), self.rows))
 
     def _slot(self, first: int, end: int) -> slice:
         return slice((first + self._kept) * self._count, (end + self._kept) * self._count)

@@ -168,14 +168,15 @@ class Schedule:
 
     def _in_order(self, late: Lags) -> Lags:
         """No action overtakes another: an action's lateness, in rows, may be due to those before it."""
-        lost = late == _NEVER
-        all = np.concatenate([self._before, np.where(lost, 0, late)])
+        lost = late == _NEVER if self._most_lost else None
+        all = np.concatenate([self._before, late if lost is None else np.where(lost, 0, late)])
         reach = 1
         while reach < len(self._before):  # the reach doubles each time
             np.maximum(all[reach:], all[:-reach] - np.int16(reach * self.every), out=all[reach:])
             reach *= 2
         self._before = all[len(late) :]
-        return np.where(lost, np.int16(_NEVER), all[len(self._before) :])
+        late = all[len(self._before) :]
+        return late if lost is None else np.where(lost, np.int16(_NEVER), late)
 
     def _in_exact_order(self, arrives: Floats) -> Floats:
         last = self._arrived

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.spaces import Box, Dict, Discrete, MultiBinary, MultiDiscrete, Tuple
 
-from .arrays import Tree, cast, joined, namespace, on
+from .arrays import Tree, cast, joined, namespace
 from .core import Seen
+from .pending import OneHot
 
 
 class Telling:
@@ -74,11 +74,11 @@ class Telling:
                 parts["pending"] = Box(least, most, dtype=action.dtype)
             self.space = Dict(parts)
 
-    def told(self, seen: Seen) -> Tree:
-        """Joins the parts for a batch."""
+    def told(self, seen: Seen | np.ndarray) -> Tree:
+        """Joins the parts for a batch, unless they are joined already."""
+        if type(seen) is np.ndarray:
+            return seen
         observation = seen.observation
-        if self.spare and type(observation) is np.ndarray and observation.shape[1] == self._width:
-            return observation
         if not self._ages and not self._pending:
             return observation
         if not self._is_flat:
@@ -96,14 +96,7 @@ def encoding(observation: gym.Space, action: gym.Space) -> Callable[[Tree], Tree
     """The encoding of pending actions next to such an observation; None: unchanged."""
     if not _is_flat(observation) or not isinstance(action, Discrete):
         return None
-    table = np.eye(action.n, dtype=np.float32) if action.n <= 64 else None  # a table is faster, but grows with the square
-    return partial(_one_hot, table, int(action.start), np.arange(action.start, action.start + action.n))
-
-
-def _one_hot(table: Any, start: int, values: Any, numbers: Any) -> Any:
-    if table is not None and type(numbers) is np.ndarray:
-        return table.take(numbers - start if start else numbers, 1).T
-    return numbers[:, None] == on(numbers, values)
+    return OneHot(np.arange(action.start, action.start + action.n))
 
 
 def _is_flat(observation: gym.Space) -> bool:

@@ -111,7 +111,7 @@ private[cli] final class SearchJob(
     for
       file <- OutFolder.write(folder, Seq(OutFolder.text(name, text)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
-      _ = found.doubt(ready.baseline.label).foreach(say)
+      _ = found.doubt(ready.baseline, ready.search.direction).foreach(say)
       _ = SearchResult.atLimits(ready.space, found.best).foreach(say)
       _ = disagreement(found.best, fresh.min(SearchResult.Checked)).foreach(say)
       pictures <-

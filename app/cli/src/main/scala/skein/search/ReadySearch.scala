@@ -188,5 +188,5 @@ object ReadySearch:
   private val Probes    = 0 until 4
   private val ShareFrom = 256
 
-  /** Minimum number of candidates in the play-off when flights are slow. */
+  /** Minimum number of episodes in the play-off per candidate when flights are slow. */
   private val LeastPlayOff = 2

@@ -35,20 +35,22 @@ enum MethodState:
   case Raced(round: Int, field: Vector[Scored])
 
   /** The play-off on fresh episodes between the leaders, the centre of the distribution and the defaults:
-    * number of its episodes so far, and the tally of each candidate.
+    * number of its episodes so far, and the tallies of the remaining candidates.
     */
   case PlayOff(episodes: Int, field: Vector[Scored])
 
   case Ended
 
 /** Finds the best of many candidates. All candidates are evaluated on equal episodes. The leaders are
-  * compared again on fresh episodes, because the best of many on a few episodes was partly lucky.
+  * compared again on fresh episodes, because the best of many on a few episodes was partly lucky: in each
+  * round of this play-off all remaining candidates run more episodes, and the worse half is out, until two
+  * have run the last.
   *
   * [[step]] is a pure function, so a search that was stopped and resumed ends like one that ran through. Of
   * equal candidates the first wins.
   *
   * @param seed seed of the random candidates
-  * @param leastPlayOff minimum number of episodes in the play-off
+  * @param leastPlayOff minimum number of episodes in the play-off per candidate that enters it
   */
 final class Search(
     space: SearchSpace,
@@ -68,11 +70,17 @@ final class Search(
     case SearchMethod.CmaEs(population, _, _, _) => Some(CmaEs(space.dimension, population, seed))
     case _                                       => None
 
-  private val playOffEpisodes =
-    (method.evaluations(space.dimension) / 10 / (MostLeaders + 2)).max(leastPlayOff).min(MostPlayOff).toInt
+  /** Number of episodes in each round of the play-off, of all its candidates together. */
+  private val playOffRound =
+    val each =
+      (method.evaluations(space.dimension) / 5 / PlayOffFields.head).max(leastPlayOff).min(MostPlayOff)
+    each.toInt * PlayOffFields.head / PlayOffFields.size
 
-  /** Number of episodes of the whole search, unless it ends early. */
-  val expected: Long = method.evaluations(space.dimension) + (MostLeaders + 2L) * playOffEpisodes
+  private def inPlayOff(field: Int): Int = (playOffRound / field).max(1)
+
+  /** Maximum number of episodes of the whole search. */
+  val expected: Long =
+    method.evaluations(space.dimension) + PlayOffFields.map(_.max(playOffRound).toLong).sum
 
   def start: SearchState =
     val course = method match
@@ -134,7 +142,7 @@ final class Search(
     case MethodState.PlayOff(episodes, field) =>
       (
         field.map(_.candidate),
-        PlayOffFrom + episodes until PlayOffFrom + (episodes + PlayOffRound).min(playOffEpisodes)
+        PlayOffFrom + episodes until PlayOffFrom + episodes + inPlayOff(field.size)
       )
     case MethodState.Ended => throw IllegalStateException("no round after the end")
 
@@ -184,12 +192,13 @@ final class Search(
           else MethodState.Raced(round + 1, standing.take((standing.size + 1) / 2))
         (next, ahead)
       case (MethodState.PlayOff(episodes, field), _) =>
-        val standing = field.zip(seen).map((f, s) => f.copy(tally = f.tally + s.tally))
-        val flown    = episodes + seen.head.tally.count
-        (
-          if flown < playOffEpisodes then MethodState.PlayOff(flown, standing) else MethodState.Ended,
-          ranked(standing)
-        )
+        val standing = ranked(field.zip(seen).map((f, s) => f.copy(tally = f.tally + s.tally)))
+        val out      = if episodes == 0 then Vector.empty else before.drop(field.size)
+        val next     =
+          if field.size <= PlayOffFields.last then MethodState.Ended
+          else
+            MethodState.PlayOff(episodes + seen.head.tally.count, standing.take((field.size + 1) / 2))
+        (next, standing ++ out)
       case _ => (MethodState.Ended, before)
 
   /** The grid cell of a candidate. Of the candidates in one cell, only the best can be a leader: candidates
@@ -230,12 +239,16 @@ object Search:
   /** First episode of the play-off; all other episodes of a search are below it. */
   val PlayOffFrom: Int = 1 << 24
 
-  // A tenth of the search's episodes, within these bounds.
-  val LeastPlayOff         = 64
-  private val MostPlayOff  = 1024L
-  private val PlayOffRound = 64
-  private val MostListed   = 16384
-  private val LeastSpread  = 1e-6
+  /** Number of candidates in each round of the play-off. */
+  private val PlayOffFields =
+    Vector.iterate(MostLeaders + 2, SearchMethod.rounds(MostLeaders + 2) - 1)(field => (field + 1) / 2)
+
+  // The play-off has a fifth of the search's episodes, within these bounds per candidate that enters it.
+  val LeastPlayOff        = 64
+  private val MostPlayOff = 1024L
+
+  private val MostListed  = 16384
+  private val LeastSpread = 1e-6
 
   /** Runs a search to its end.
     *

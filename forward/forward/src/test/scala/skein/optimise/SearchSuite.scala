@@ -85,6 +85,15 @@ class SearchSuite extends munit.FunSuite:
     val found = Search.run(space, SearchMethod.Random(200, 4), Direction.Minimise, 1, evaluator).head
     assertEquals(found.tally.count, seen.result().size)
 
+  test("the play-off spends most of its episodes on its two best candidates"):
+    val machine  = Search(space, SearchMethod.Random(200, 100), Direction.Minimise, 1)
+    val ended    = Iterator.iterate(machine.start)(machine.step(_, bowl, Int.MaxValue)).find(_.isDone).get
+    val episodes = ended.leaders.map(_.tally.count)
+    assertEquals(episodes.take(2), Vector.fill(2)(episodes.max))
+    assertEquals(episodes, episodes.sorted.reverse)
+    assert(episodes.last * 8 < episodes.head, s"$episodes")
+    assert(ended.flown <= machine.expected && ended.flown > 0.99 * machine.expected, s"$ended")
+
   test("a race spends most of its episodes on the good candidates"):
     var flown     = Map.empty[Vector[Double], Int].withDefaultValue(0)
     val evaluator = new Evaluator:

@@ -84,17 +84,15 @@ object Codec:
   given Codec[Vector3]         = derived
   given Codec[Quaternion]      = derived
 
-  given option[A](using codec: Codec[A]): Codec[Option[A]] = new Codec[Option[A]]:
-    def write(value: Option[A], out: DataOutputStream): Unit =
-      out.writeBoolean(value.isDefined)
-      value.foreach(codec.write(_, out))
-    def read(in: DataInputStream): Option[A] = Option.when(in.readBoolean())(codec.read(in))
+  given option[A](using codec: Codec[A]): Codec[Option[A]] = of[Option[A]]((value, out) =>
+    out.writeBoolean(value.isDefined)
+    value.foreach(codec.write(_, out))
+  )(in => Option.when(in.readBoolean())(codec.read(in)))
 
-  given vector[A](using codec: Codec[A]): Codec[Vector[A]] = new Codec[Vector[A]]:
-    def write(value: Vector[A], out: DataOutputStream): Unit =
-      out.writeInt(value.size)
-      value.foreach(codec.write(_, out))
-    def read(in: DataInputStream): Vector[A] = Vector.fill(length(in))(codec.read(in))
+  given vector[A](using codec: Codec[A]): Codec[Vector[A]] = of[Vector[A]]((value, out) =>
+    out.writeInt(value.size)
+    value.foreach(codec.write(_, out))
+  )(in => Vector.fill(length(in))(codec.read(in)))
 
   given pair[A, B](using Codec[A], Codec[B]): Codec[(A, B)] = derived
 
@@ -120,25 +118,19 @@ object Codec:
       derived[head](using summonInline[Mirror.Of[head]]).asInstanceOf[Codec[Any]] :: cases[tail]
 
   private[skein] def ofFields[A](product: Mirror.ProductOf[A], fields: List[Codec[Any]]): Codec[A] =
-    new Codec[A]:
-      def write(value: A, out: DataOutputStream): Unit =
-        for (field, codec) <- value.asInstanceOf[Product].productIterator.zip(fields) do
-          codec.write(field, out)
-      def read(in: DataInputStream): A =
-        product.fromProduct(Tuple.fromArray(fields.map(_.read(in)).toArray[Any]))
+    of[A]((value, out) =>
+      for (field, codec) <- value.asInstanceOf[Product].productIterator.zip(fields) do codec.write(field, out)
+    )(in => product.fromProduct(Tuple.fromArray(fields.map(_.read(in)).toArray[Any])))
 
   private[skein] def ofCases[A](label: String, sum: Mirror.SumOf[A], cases: List[Codec[Any]]): Codec[A] =
-    new Codec[A]:
-      private val all = cases.toVector
-
-      def write(value: A, out: DataOutputStream): Unit =
-        val number = sum.ordinal(value)
-        out.writeByte(number + 1)
-        all(number).write(value, out)
-
-      def read(in: DataInputStream): A =
-        val kind = in.readUnsignedByte()
-        if kind < 1 || kind > all.size then
-          val what = label.replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(Locale.ROOT)
-          throw IOException(s"expected a kind of $what from 1 to ${all.size}, got $kind")
-        all(kind - 1).read(in).asInstanceOf[A]
+    val all = cases.toVector
+    of[A]((value, out) =>
+      val number = sum.ordinal(value)
+      out.writeByte(number + 1)
+      all(number).write(value, out)
+    ): in =>
+      val kind = in.readUnsignedByte()
+      if kind < 1 || kind > all.size then
+        val what = label.replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(Locale.ROOT)
+        throw IOException(s"expected a kind of $what from 1 to ${all.size}, got $kind")
+      all(kind - 1).read(in).asInstanceOf[A]

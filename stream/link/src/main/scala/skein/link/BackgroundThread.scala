@@ -2,7 +2,6 @@ package skein.link
 
 import java.lang.management.ManagementFactory
 import java.util.concurrent.ThreadFactory
-import java.util.concurrent.atomic.AtomicInteger
 import java.util.concurrent.locks.LockSupport
 import skein.units.Span
 
@@ -66,18 +65,11 @@ object BackgroundThread:
 
   /** A factory of daemon threads with idle priority. */
   def factory(name: String): ThreadFactory =
-    val count = AtomicInteger()
-    (work: Runnable) =>
-      val thread = Thread(
-        () =>
-          SchedulingPolicy.thisThread.foreach(SchedulingPolicy.Idle.schedule)
-          work.run()
-        ,
-        s"$name-${count.incrementAndGet()}"
-      )
-      thread.setDaemon(true)
-      thread.setPriority(Thread.MIN_PRIORITY)
-      thread
+    val threads = Thread.ofPlatform().daemon().priority(Thread.MIN_PRIORITY).name(s"$name-", 1).factory()
+    work =>
+      threads.newThread: () =>
+        SchedulingPolicy.thisThread.foreach(SchedulingPolicy.Idle.schedule)
+        work.run()
 
   /** A factory of daemon threads with ordinary priority. */
   def usual(name: String): ThreadFactory = Thread.ofPlatform().daemon().name(s"$name-usual-", 1).factory()

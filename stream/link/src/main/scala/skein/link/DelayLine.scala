@@ -1,5 +1,6 @@
 package skein.link
 
+import java.util.concurrent.atomic.LongAdder
 import org.apache.pekko.stream.*
 import org.apache.pekko.stream.SubscriptionWithCancelException.NonFailureCancellation
 import org.apache.pekko.stream.stage.*
@@ -31,6 +32,7 @@ import skein.units.*
   * @param open creates the delivery for a line that opens at this time
   * @param sinceStart time since the link's start
   * @param broken the error that both sides get when the link breaks
+  * @param delivered counts bytes that leave the line
   */
 private[link] final class DelayLine(
     open: Span => Delivery,
@@ -38,7 +40,9 @@ private[link] final class DelayLine(
     sinceStart: () => Span,
     maxBytes: Int,
     broken: TransportError,
-    counts: LineCounters,
+    counts: LinkCounters,
+    delivered: LongAdder,
+    onBreak: () => Unit = () => (),
     packets: Packets = Packets.Whole
 ) extends GraphStage[FlowShape[ByteString, ByteString]]:
   import DelayLine.*
@@ -87,18 +91,18 @@ private[link] final class DelayLine(
         case Packets.Whole                               => travel(waiting.bytes, leave, waiting.delay)
         case Packets.Datagrams(loss, duplicates, random) =>
           if loss.loses(leave) then
-            counts.packets.lost.increment()
+            counts.packetsLost.increment()
             lose(waiting.bytes)
           else
             travel(waiting.bytes, leave, waiting.delay)
             if duplicates > 0 && random.nextDouble() < duplicates then
-              counts.packets.duplicates.increment()
+              counts.duplicates.increment()
               bytesUnderWay += waiting.bytes.size
               travel(waiting.bytes, leave, delivery.delay(leave.max(sinceStart())))
         case tcp: Packets.Tcp =>
           for bytes <- Packets.of(waiting.bytes) do
             if tcp.loss.loses(leave) then
-              counts.packets.lost.increment()
+              counts.packetsLost.increment()
               val segment = Segment(bytes, Segment.Never)
               segment.lost(leave, tcp)
               underWay.enqueue(segment)
@@ -127,9 +131,9 @@ private[link] final class DelayLine(
       private def repeat(tcp: Packets.Tcp): Unit =
         val now = sinceStart()
         for segment <- missing if segment.againAt <= now do
-          counts.packets.sentAgain.increment()
+          counts.packetsSentAgain.increment()
           if tcp.loss.loses(now) then
-            counts.packets.lost.increment()
+            counts.packetsLost.increment()
             segment.lostAgain(now)
           else
             val delay = delivery.delay(now)
@@ -207,7 +211,7 @@ private[link] final class DelayLine(
         case Timer.Cancel => cancellation.foreach(cancelStage)
         case _            =>
           counts.bytesLost.add(bytesUnderWay)
-          counts.onBreak()
+          onBreak()
           failStage(broken)
 
       private def endWith(failure: Option[Throwable]): Unit =
@@ -225,7 +229,7 @@ private[link] final class DelayLine(
             if isDatagrams then Seq(underWay.dequeue()) else underWay.removeHeadWhile(_.due <= now)
           val bytes = segments.foldLeft(ByteString.empty)(_ ++ _.bytes)
           bytesUnderWay -= bytes.size
-          counts.bytesDelivered.add(bytes.size)
+          delivered.add(bytes.size)
           push(out, bytes)
         if bytesUnderWay < maxBytes then pullIfIdle()
         (underWay.headOption, end) match

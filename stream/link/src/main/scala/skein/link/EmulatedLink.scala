@@ -1,6 +1,6 @@
 package skein.link
 
-import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong, LongAccumulator, LongAdder}
+import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong, LongAdder}
 import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow}
 import org.apache.pekko.util.ByteString
@@ -28,19 +28,15 @@ final class EmulatedLink(
   private val cutSeed     = SplitMix64.seedOf(seed, 4)
   private val outageSeed  = SplitMix64.seedOf(seed, 5)
 
-  private val attempts, connections        = AtomicLong()
-  private val disconnects                  = LongAdder()
-  private val bytesToServer, bytesToClient = LongAdder()
-  private val bytesLost, stalls            = LongAdder()
-  private val bytesHeldBack                = LongAdder()
-  private val longestWaitNs                = LongAccumulator(math.max(_, _), 0)
-  private val packets                      = PacketCounters()
+  private val attempts, connections = AtomicLong()
+  private val counters              = LinkCounters()
 
-  private val toServer = Direction(profile.toServer, bytesToServer, SplitMix64.seedOf(seed, 6))
-  private val toClient = Direction(profile.toClient, bytesToClient, SplitMix64.seedOf(seed, 7))
+  private val toServer = Direction(profile.toServer, SplitMix64.seedOf(seed, 6))
+  private val toClient = Direction(profile.toClient, SplitMix64.seedOf(seed, 7))
 
   /** The state of one direction that all connections share. */
-  private final class Direction(val latency: LatencyProfile, val delivered: LongAdder, lossSeed: Long):
+  private final class Direction(val latency: LatencyProfile, lossSeed: Long):
+    val delivered                      = LongAdder()
     val bottleneck: Option[Bottleneck] = latency.bandwidth.map(Bottleneck(_))
     val loss: PacketLoss               = PacketLoss(latency, outageSeed, lossSeed)
     private val duplicateSeed          = SplitMix64.seedOf(lossSeed, 1)
@@ -58,16 +54,16 @@ final class EmulatedLink(
 
   def counts: LinkCounts = LinkCounts(
     connections.get,
-    bytesToServer.sum,
-    bytesToClient.sum,
-    bytesLost.sum,
-    stalls.sum,
-    disconnects.sum,
-    bytesHeldBack.sum,
-    Span.ofNanos(longestWaitNs.get),
-    packets.lost.sum,
-    packets.sentAgain.sum,
-    packets.duplicates.sum
+    toServer.delivered.sum,
+    toClient.delivered.sum,
+    counters.bytesLost.sum,
+    counters.stalls.sum,
+    counters.disconnects.sum,
+    counters.bytesHeldBack.sum,
+    Span.ofNanos(counters.longestWaitNs.get),
+    counters.packetsLost.sum,
+    counters.packetsSentAgain.sum,
+    counters.duplicates.sum
   )
 
   /** A new connection over this link; its first side is at the client, its second at the server. To be
@@ -81,19 +77,10 @@ final class EmulatedLink(
       broken: TransportError,
       isDatagrams: Boolean = false
   ): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
-    val index                                   = 2 * connections.getAndIncrement()
-    val whole                                   = AtomicBoolean(true)
-    def countBreak()                            = if whole.getAndSet(false) then disconnects.increment()
+    val index        = 2 * connections.getAndIncrement()
+    val whole        = AtomicBoolean(true)
+    def countBreak() = if whole.getAndSet(false) then counters.disconnects.increment()
     def line(direction: Direction, index: Long) =
-      val counters =
-        LineCounters(
-          direction.delivered,
-          bytesLost,
-          bytesHeldBack,
-          longestWaitNs,
-          packets,
-          () => countBreak()
-        )
       val open    = delivery(direction.latency, SplitMix64.seedOf(lineSeed, index), !isDatagrams)
       val delayed = Flow.fromGraph(DelayLine(
         open,
@@ -102,6 +89,8 @@ final class EmulatedLink(
         profile.maxBytesInFlight,
         broken,
         counters,
+        direction.delivered,
+        () => countBreak(),
         direction.packets(index, isDatagrams)
       ))
       if profile.cutsSegments && !isDatagrams then
@@ -136,6 +125,6 @@ final class EmulatedLink(
     LatencySampler(latency, stateSeed, seed),
     profile.faults.stalls(faultSeed),
     profile.faults.breakOf(opened, faultSeed),
-    stalls,
+    counters.stalls,
     isInOrder
   )

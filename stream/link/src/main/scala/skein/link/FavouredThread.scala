@@ -1,8 +1,7 @@
 package skein.link
 
-import java.lang.foreign.{FunctionDescriptor, Linker, ValueLayout}
+import java.lang.foreign.ValueLayout
 import java.util.concurrent.ThreadFactory
-import java.util.concurrent.atomic.AtomicInteger
 import scala.util.Try
 
 /** Threads that take precedence over all others except [[ControlThreads]], where the system allows it: for
@@ -14,35 +13,16 @@ import scala.util.Try
 object FavouredThread:
 
   def factory(name: String): ThreadFactory =
-    val count = AtomicInteger()
-    (work: Runnable) =>
-      val thread = Thread(
-        () =>
-          for thread <- SchedulingPolicy.thisThread do
-            if !SchedulingPolicy.Favoured.schedule(thread) then favour(thread): Unit
-          work.run()
-        ,
-        s"$name-${count.incrementAndGet()}"
-      )
-      thread.setDaemon(true)
-      thread
+    val threads = Thread.ofPlatform().daemon().name(s"$name-", 1).factory()
+    work =>
+      threads.newThread: () =>
+        for thread <- SchedulingPolicy.thisThread do
+          if !SchedulingPolicy.Favoured.schedule(thread) then favour(thread): Unit
+        work.run()
 
   /** @param thread the system's number; threads that it starts inherit its niceness
     * @return whether the system did so
     */
-  private def favour(thread: Int): Boolean = Try:
-    val result: AnyRef = setPriority.invokeWithArguments(Int.box(0), Int.box(thread), Int.box(-20))
-    result == Int.box(0)
-  .getOrElse(false)
+  private def favour(thread: Int): Boolean = Try(call(0, thread, -20)).getOrElse(false)
 
-  private lazy val setPriority =
-    val linker = Linker.nativeLinker()
-    linker.downcallHandle(
-      linker.defaultLookup().findOrThrow("setpriority"),
-      FunctionDescriptor.of(
-        ValueLayout.JAVA_INT,
-        ValueLayout.JAVA_INT,
-        ValueLayout.JAVA_INT,
-        ValueLayout.JAVA_INT
-      )
-    )
+  private lazy val call = SchedulingPolicy.function("setpriority", ValueLayout.JAVA_INT)

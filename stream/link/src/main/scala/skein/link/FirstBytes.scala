@@ -43,7 +43,7 @@ object FirstBytes:
 
   /** Passes a connection's bytes on once the first ones fit the port's own protocol.
     *
-    *   - '''Emits when''' bytes arrive and the protocol is decided.
+    *   - '''Emits when''' bytes arrive and the protocol is decided, or upstream has completed before it is.
     *   - '''Backpressures when''' downstream does.
     *   - '''Completes when''' upstream has completed.
     *   - '''Fails when''' the first bytes are foreign, with [[TransportError.Foreign]].
@@ -62,7 +62,7 @@ object FirstBytes:
               case Undecided     => (Some(all), ByteString.empty)
               case Foreign(what) => throw TransportError.Foreign(from, what)
       ,
-      _ => None
+      identity // no more bytes follow, so that these are no request
     ).filter(_.nonEmpty)
 
   /** HTTP methods that a page may send without a prior OPTIONS request, and methods that programs send. */

@@ -33,15 +33,6 @@ final case class LinkCounts(
 )
 
 /** The counters that a link's lines share. */
-private[link] final class LineCounters(
-    val bytesDelivered: LongAdder,
-    val bytesLost: LongAdder,
-    val bytesHeldBack: LongAdder,
-    val longestWaitNs: LongAccumulator,
-    val packets: PacketCounters,
-    val onBreak: () => Unit
-)
-
-/** The counters of packets that both directions of a link share. */
-private[link] final class PacketCounters:
-  val lost, sentAgain, duplicates = LongAdder()
+private[link] final class LinkCounters:
+  val bytesLost, stalls, disconnects, bytesHeldBack, packetsLost, packetsSentAgain, duplicates = LongAdder()
+  val longestWaitNs = LongAccumulator(math.max(_, _), 0)

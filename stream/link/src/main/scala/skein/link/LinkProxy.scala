@@ -1,5 +1,6 @@
 package skein.link
 
+import java.util.concurrent.ConcurrentHashMap
 import org.apache.pekko.{Done, NotUsed}
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
@@ -7,6 +8,7 @@ import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow, Keep, Sink, Source}
 import org.apache.pekko.stream.{KillSwitches, SharedKillSwitch}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future, Promise}
+import scala.jdk.CollectionConverters.*
 import skein.units.Span
 
 /** Puts an emulated link between clients and a server: it listens, and forwards each connection that it
@@ -21,7 +23,7 @@ final class LinkProxy private (
     listening: Listening,
     link: EmulatedLink,
     switch: SharedKillSwitch,
-    open: LinkProxy.Open
+    open: java.util.Set[Promise[Done]]
 )(using system: ActorSystem):
 
   /** The address that clients connect to, with the actual port. */
@@ -33,9 +35,12 @@ final class LinkProxy private (
     * `most`.
     */
   def ended(most: Span): Future[Done] =
-    given ExecutionContext = ExecutionContext.parasitic
+    given ExecutionContext      = ExecutionContext.parasitic
+    def allClosed: Future[Done] =
+      if open.isEmpty then Future.successful(Done)
+      else Future.traverse(open.asScala.toSeq)(_.future).flatMap(_ => allClosed)
     Future.firstCompletedOf(
-      Seq(open.allClosed, after(most.toDuration, system.scheduler)(Future.successful(Done)))
+      Seq(allClosed, after(most.toDuration, system.scheduler)(Future.successful(Done)))
     )
 
   /** Stops accepting and closes the open connections. */
@@ -71,7 +76,7 @@ object LinkProxy:
     given ExecutionContext = ExecutionContext.parasitic
     val switch             = KillSwitches.shared("link-proxy")
     val seats              = Seats(maxConnections, link.clock)
-    val open               = Open()
+    val open               = ConcurrentHashMap.newKeySet[Promise[Done]]()
 
     def forward(incoming: Incoming, seat: Seats.Seat, own: SharedKillSwitch): Unit =
       // Data from either side keep the seat.
@@ -86,7 +91,8 @@ object LinkProxy:
         .atop(link.connection(TransportError.Lost(to, "the link broke"), isDatagrams))
         .atop(beside())
         .joinMat(watched(transport.connect(to)))(Keep.right)
-      open.opened()
+      val closed = Promise[Done]()
+      open.add(closed): Unit
       val (sent, ((gone, reached, silent), answered)) = client
         .watchTermination()(Keep.right)
         .joinMat(server.watchTermination()(Keep.both))(Keep.both)
@@ -99,7 +105,10 @@ object LinkProxy:
         answered.onComplete: _ =>
           watching.closed(seat.number)
           seat.left()
-          gone.onComplete(_ => silent.onComplete(_ => open.closed()))
+          gone.onComplete: _ =>
+            silent.onComplete: _ =>
+              open.remove(closed): Unit
+              closed.success(Done)
 
     def accept(incoming: Incoming): Unit =
       val own = KillSwitches.shared("link-proxy-connection")
@@ -120,30 +129,6 @@ object LinkProxy:
       .viaMat(server)(Keep.both)
       .watchTermination():
         case ((gone, reached), silent) => (gone, reached, silent)
-
-  /** Counts connections until they have ended; from any thread. */
-  private final class Open:
-    private var count   = 0
-    private var waiting = Vector.empty[Promise[Done]]
-
-    def opened(): Unit = synchronized(count += 1)
-
-    def closed(): Unit =
-      val told = synchronized:
-        count -= 1
-        if count > 0 then Vector.empty
-        else
-          val all = waiting
-          waiting = Vector.empty
-          all
-      told.foreach(_.success(Done))
-
-    def allClosed: Future[Done] = synchronized:
-      if count == 0 then Future.successful(Done)
-      else
-        val one = Promise[Done]()
-        waiting :+= one
-        one.future
 
   /** A stage that both directions of a connection pass through; its first side is at the client. */
   type Passing = BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed]

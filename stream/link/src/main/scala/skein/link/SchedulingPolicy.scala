@@ -1,7 +1,6 @@
 package skein.link
 
-import java.lang.foreign.{Arena, FunctionDescriptor, Linker, ValueLayout}
-import java.lang.invoke.MethodHandle
+import java.lang.foreign.{Arena, FunctionDescriptor, Linker, MemoryLayout, ValueLayout}
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.{Try, Using}
@@ -36,11 +35,12 @@ enum SchedulingPolicy(private val number: Int, priority: Int):
     */
   def schedule(thread: Int): Boolean = SchedulingPolicy.isLinux && Try:
     Using.resource(Arena.ofConfined()): arena =>
-      val parameter      = arena.allocateFrom(ValueLayout.JAVA_INT, priority)
-      val flags          = if this != Idle then SchedulingPolicy.ResetOnFork else 0
-      val result: AnyRef =
-        SchedulingPolicy.setScheduler.invokeWithArguments(Int.box(thread), Int.box(number | flags), parameter)
-      result == Int.box(0)
+      val flags = if this != Idle then SchedulingPolicy.ResetOnFork else 0
+      SchedulingPolicy.setScheduler(
+        thread,
+        number | flags,
+        arena.allocateFrom(ValueLayout.JAVA_INT, priority)
+      )
   .getOrElse(false)
 
 object SchedulingPolicy:
@@ -52,17 +52,19 @@ object SchedulingPolicy:
   /** The function sched_setscheduler(2), linked once: linking takes milliseconds, too long for a control
     * thread.
     */
-  private lazy val setScheduler: MethodHandle =
+  private lazy val setScheduler = function("sched_setscheduler", ValueLayout.ADDRESS)
+
+  /** Links a function of the system that takes two numbers and a third argument.
+    *
+    * @return calls it; returns whether it returned 0
+    */
+  private[link] def function(name: String, third: MemoryLayout): (Int, Int, Any) => Boolean =
     val linker = Linker.nativeLinker()
-    linker.downcallHandle(
-      linker.defaultLookup().findOrThrow("sched_setscheduler"),
-      FunctionDescriptor.of(
-        ValueLayout.JAVA_INT,
-        ValueLayout.JAVA_INT,
-        ValueLayout.JAVA_INT,
-        ValueLayout.ADDRESS
-      )
+    val handle = linker.downcallHandle(
+      linker.defaultLookup().findOrThrow(name),
+      FunctionDescriptor.of(ValueLayout.JAVA_INT, ValueLayout.JAVA_INT, ValueLayout.JAVA_INT, third)
     )
+    (one, other, last) => handle.invokeWithArguments(one, other, last) == Int.box(0)
 
   /** The calling thread's number; None where the system does not report it. */
   def thisThread: Option[Int] =

@@ -2,7 +2,7 @@ package skein.link
 
 import java.io.IOException
 import java.net.{BindException, ConnectException, InetSocketAddress, UnknownHostException}
-import javax.net.ssl.{SSLContext, SSLEngine, SSLException}
+import javax.net.ssl.{SSLContext, SSLEngine, SSLException, SSLParameters}
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.io.Inet.SocketOption
@@ -89,23 +89,21 @@ object TcpTransport:
   private val Protocols = Array("TLSv1.3")
 
   private def connecting(context: SSLContext, to: Address): SSLEngine =
-    val engine = context.createSSLEngine(to.host, to.port)
-    engine.setUseClientMode(true)
-    val asked = engine.getSSLParameters
-    asked.setProtocols(Protocols)
     // The name is verified according to the rules of browsers.
-    asked.setEndpointIdentificationAlgorithm("HTTPS")
-    engine.setSSLParameters(asked)
-    TlsEngine(engine)
+    engine(context.createSSLEngine(to.host, to.port), isClient = true)(
+      _.setEndpointIdentificationAlgorithm("HTTPS")
+    )
 
   private def accepting(context: SSLContext): SSLEngine =
-    val engine = context.createSSLEngine()
-    engine.setUseClientMode(false)
-    val asked = engine.getSSLParameters
-    asked.setProtocols(Protocols)
-    asked.setNeedClientAuth(true)
-    engine.setSSLParameters(asked)
-    TlsEngine(engine)
+    engine(context.createSSLEngine(), isClient = false)(_.setNeedClientAuth(true))
+
+  private def engine(made: SSLEngine, isClient: Boolean)(set: SSLParameters => Unit): SSLEngine =
+    made.setUseClientMode(isClient)
+    val parameters = made.getSSLParameters
+    parameters.setProtocols(Protocols)
+    set(parameters)
+    made.setSSLParameters(parameters)
+    TlsEngine(made)
 
   private[link] type Explain = PartialFunction[Throwable, Throwable]
 

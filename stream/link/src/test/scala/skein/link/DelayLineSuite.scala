@@ -1,6 +1,6 @@
 package skein.link
 
-import java.util.concurrent.atomic.{LongAccumulator, LongAdder}
+import java.util.concurrent.atomic.LongAdder
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
@@ -24,7 +24,7 @@ class DelayLineSuite extends munit.FunSuite:
   private final class Line(
       val flow: Flow[ByteString, ByteString, Any],
       val ms: () => Double,
-      val counts: LineCounters
+      val counts: LinkCounters
   )
 
   private def over[A](
@@ -49,22 +49,23 @@ class DelayLineSuite extends munit.FunSuite:
           LongAdder(),
           isInOrder = !isDatagrams
         )
-      val counts =
-        LineCounters(
-          LongAdder(),
-          LongAdder(),
-          LongAdder(),
-          LongAccumulator(math.max(_, _), 0),
-          PacketCounters(),
-          () => ()
-        )
+      val counts  = LinkCounters()
       val loss    = PacketLoss(latency, 5, 6)
       val packets =
         if isDatagrams then Packets.Datagrams(loss, duplicates, SplitMix64(7))
         else if loss.isAny then
           Packets.Tcp(loss, Retransmission.timeout(latency), Retransmission.overtaken(latency))
         else Packets.Whole
-      val line = Flow.fromGraph(DelayLine(open, None, () => sinceStart, maxBytes, lost, counts, packets))
+      val line = Flow.fromGraph(DelayLine(
+        open,
+        None,
+        () => sinceStart,
+        maxBytes,
+        lost,
+        counts,
+        LongAdder(),
+        packets = packets
+      ))
       body(Line(line, () => sinceStart.toMillis, counts))
     .value
 
@@ -208,22 +209,15 @@ class DelayLineSuite extends munit.FunSuite:
       val start         = clock.now()
       def ms            = clock.now().since(start).toMillis
       val bottleneck    = Bottleneck(Bandwidth.ofBitsPerSecond(50_000_000))
-      val counts        =
-        LineCounters(
-          LongAdder(),
-          LongAdder(),
-          LongAdder(),
-          LongAccumulator(math.max(_, _), 0),
-          PacketCounters(),
-          () => ()
-        )
-      def line = DelayLine(
+      val counts        = LinkCounters()
+      def line          = DelayLine(
         _ => Delivery(LatencySampler(constant(20), 1, 2), Iterator.empty, None, LongAdder()),
         Some(bottleneck),
         () => clock.now().since(start),
         4 << 20,
         lost,
-        counts
+        counts,
+        LongAdder()
       )
       val images   = Source.tick(5.millis, 400.millis, ByteString(new Array[Byte](image))).take(5)
       val commands = Source.tick(0.millis, 10.millis, ByteString(1)).take(200)
@@ -271,10 +265,10 @@ class DelayLineSuite extends munit.FunSuite:
 
   test("TCP sends lost bytes again and keeps their order: nothing is missing"):
     val (came, counts) = over(lossy): line =>
-      for came <- arrivals(every(20, 1000), line) yield (came, line.counts.packets)
+      for came <- arrivals(every(20, 1000), line) yield (came, line.counts)
     assertEquals(came.map(_._1).mkString, (0 until 1000).map(i => s"$i;").mkString)
-    assertEquals(counts.lost.sum, counts.sentAgain.sum)
-    assert(counts.lost.sum > 70 && counts.lost.sum < 150, s"${counts.lost.sum}")
+    assertEquals(counts.packetsLost.sum, counts.packetsSentAgain.sum)
+    assert(counts.packetsLost.sum > 70 && counts.packetsLost.sum < 150, s"${counts.packetsLost.sum}")
 
   test("a lost packet that none follows is sent again after the timeout, and then after twice that"):
     // One packet every 30 s, so that each is alone: 50 ms under way, time-outs of 300 ms.
@@ -300,9 +294,9 @@ class DelayLineSuite extends munit.FunSuite:
     val bytes          = ByteString.fromArray(Array.tabulate(1_000_000)(_.toByte))
     val (came, counts) = over(lossy, maxBytes = 10_000_000): line =>
       for all <- Source.single(bytes).via(line.flow).runFold(ByteString.empty)(_ ++ _)
-      yield (all, line.counts.packets)
+      yield (all, line.counts)
     assertEquals(came, bytes)
-    assert(counts.lost.sum > 40, s"${counts.lost.sum}")
+    assert(counts.packetsLost.sum > 40, s"${counts.packetsLost.sum}")
 
   test("bytes of TCP that an outage loses arrive with a repetition after its end"):
     val came = over(profile("outage:1s/10s,constant:100ms"))(line => arrivals(every(50, 2000), line))
@@ -318,11 +312,11 @@ class DelayLineSuite extends munit.FunSuite:
         for came <- arrivals(every(5, 2000), line) yield (came, line.counts)
     val ids = came.map((text, ms) => text.stripSuffix(";").toInt -> ms)
     assert(ids.forall((id, ms) => (ms - 5 * id - 50).abs < 1e-6))
-    assertEquals(2000 - ids.map(_._1).distinct.size, counts.packets.lost.sum.toInt)
-    assertEquals(ids.size - ids.map(_._1).distinct.size, counts.packets.duplicates.sum.toInt)
-    assertEqualsDouble(counts.packets.lost.sum.toDouble, 200, 80)
-    assertEqualsDouble(counts.packets.duplicates.sum.toDouble, 90, 40)
-    assertEquals(counts.packets.sentAgain.sum, 0L)
+    assertEquals(2000 - ids.map(_._1).distinct.size, counts.packetsLost.sum.toInt)
+    assertEquals(ids.size - ids.map(_._1).distinct.size, counts.duplicates.sum.toInt)
+    assertEqualsDouble(counts.packetsLost.sum.toDouble, 200, 80)
+    assertEqualsDouble(counts.duplicates.sum.toDouble, 90, 40)
+    assertEquals(counts.packetsSentAgain.sum, 0L)
     assert(counts.bytesLost.sum > 0)
 
   test("a late datagram is overtaken by those sent before its time; over TCP they wait for it"):

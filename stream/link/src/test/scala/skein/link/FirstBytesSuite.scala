@@ -57,6 +57,7 @@ class FirstBytesSuite extends munit.FunSuite:
 
   test("the guard passes all bytes of its own protocol, and no bytes of other protocols"):
     assertEquals(through(ByteString("G"), ByteString("ET"), ByteString("S on")), ByteString("GETS on"))
+    assertEquals(through(ByteString("P"), ByteString("UT")), ByteString("PUT"), "which no more bytes follow")
     val error = intercept[TransportError.Foreign](through(ByteString("GE"), ByteString("T / HTTP")))
     assertEquals(
       error.getMessage,

@@ -1,6 +1,5 @@
 package skein.vtime
 
-import java.lang.management.ManagementFactory
 import java.util.ArrayDeque
 import java.util.SplittableRandom
 import java.util.random.RandomGenerator
@@ -138,7 +137,7 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
     * called for every task, since a reading takes as long as a short task.
     */
   private def lookAtProcessor(): Unit =
-    val taken = Loop.processorNanos()
+    val taken = Watchdog.processorNanos(thread)
     if tasksThisTime == Loop.tasksPerLook then takenAtFirstLook = taken
     isOverlong = taken >= 0 && taken - takenAtFirstLook > limits.processorPerInstant.toNanos
 
@@ -175,14 +174,6 @@ private object Loop:
 
   /** Tasks at one instant between two readings of the processor time. */
   private val tasksPerLook = 256L
-
-  private val threads = ManagementFactory.getThreadMXBean
-
-  /** Processor time of the calling thread so far; -1 where the JVM does not report it. */
-  private def processorNanos(): Long =
-    if threads.isCurrentThreadCpuTimeSupported && threads.isThreadCpuTimeEnabled then
-      threads.getCurrentThreadCpuTime
-    else -1
 
   def current: Loop = Redirect.environment() match
     case loop: Loop => loop

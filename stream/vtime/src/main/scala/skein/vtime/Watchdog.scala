@@ -78,7 +78,8 @@ private object Watchdog:
 
   private val threads = ManagementFactory.getThreadMXBean
 
-  private def processorNanos(thread: Thread): Long =
+  /** Processor time of a thread so far; -1 where the JVM does not report it. */
+  def processorNanos(thread: Thread): Long =
     if threads.isThreadCpuTimeSupported && threads.isThreadCpuTimeEnabled then
       threads.getThreadCpuTime(thread.threadId)
     else -1

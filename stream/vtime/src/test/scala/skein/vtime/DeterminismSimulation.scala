@@ -71,7 +71,7 @@ class DeterminismSimulation extends munit.FunSuite, Unhurried:
           s"2000-01-01T${inUtc}Z",
           "946684801500",
           "Z",
-          "RedirectedClock[Asia/Tokyo]",
+          "SourceClock[Redirected,Asia/Tokyo]",
           "946684801500",
           "946684801500"
         )

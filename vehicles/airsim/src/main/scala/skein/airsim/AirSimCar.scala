@@ -20,7 +20,7 @@ import skein.vehicle.{CarControls, CarDriver, GoTo, SingleTrack}
 final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTrack = SingleTrack())(using
     system: ActorSystem
 ) extends VehiclePort:
-  import VehicleErrors.{errorOf, noReading}
+  import VehicleErrors.errorOf
   import system.dispatcher
   private type Answer = Either[VehicleError, Boolean]
 
@@ -31,7 +31,7 @@ final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTr
     .status()
     .map: answer =>
       answer.foreach(reading => seen.set(Some(reading.value.kinematics)))
-      answer.left.map(errorOf).filterOrElse(!_.value.isMissing, noReading).map(_.map(_.kinematics))
+      VehicleErrors.reading(answer)
 
   def act(action: Action, lasts: Span): Future[Answer] = action match
     case Action.VelocityAt(north, east, _, _) => drive(lasts)(_ => (north, east))

@@ -19,7 +19,7 @@ import skein.units.*
   */
 final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using system: ActorSystem)
     extends VehiclePort:
-  import VehicleErrors.{errorOf, noReading}
+  import VehicleErrors.errorOf
   import system.dispatcher
 
   private val moves = MoveQueue(multirotor, onLost)
@@ -31,8 +31,7 @@ final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using 
   def callsBeside: Int = moves.callsBeside
 
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
-    multirotor.status().map: answer =>
-      answer.left.map(errorOf).filterOrElse(!_.value.isMissing, noReading).map(_.map(_.kinematics))
+    multirotor.status().map(VehicleErrors.reading)
 
   def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] = action match
     case Action.VelocityAt(north, east, down, yaw) =>

@@ -19,25 +19,16 @@ final class Car(
 ) extends VehicleClient(client, name, originNed, connectionKey):
   private given ExecutionContext = ExecutionContext.parasitic
 
-  def kinematics(): Future[Either[RpcError, Stamped[Kinematics]]] = status().map(_.map(_.map(_.kinematics)))
-
-  def status(): Future[Either[RpcError, Stamped[CarStatus]]] =
-    stamped("getCarState")((state: CarState) =>
-      (
-        CarStatus(
-          inWorld(state.kinematics_estimated),
-          MetresPerSecond(state.speed),
-          state.gear,
-          state.rpm,
-          state.handbrake,
-          state.skein_missing
-        ),
-        state.timestamp
-      )
-    ).map(_.filterOrElse(
-      _.value.kinematics.isFinite,
-      RpcError.Malformed("getCarState", "expected finite numbers in kinematics_estimated")
-    ))
+  def status(): Future[Either[RpcError, Stamped[CarStatus]]] = stateOf("getCarState"): (state: CarState) =>
+    val status = CarStatus(
+      inWorld(state.kinematics_estimated),
+      MetresPerSecond(state.speed),
+      state.gear,
+      state.rpm,
+      state.handbrake,
+      state.skein_missing
+    )
+    (status, state.timestamp)
 
   /** Sets pedals and steering. Has no effect without API control.
     *
@@ -71,7 +62,6 @@ object Car:
   *
   * @param speed along its heading, negative in reverse
   * @param gear −1 is reverse
-  * @param isMissing whether its sensors have no reading now, so that `kinematics` are earlier ones
   */
 final case class CarStatus(
     kinematics: Kinematics,
@@ -80,4 +70,4 @@ final case class CarStatus(
     rpm: Double,
     handbrake: Boolean,
     isMissing: Boolean = false
-)
+) extends VehicleStatus

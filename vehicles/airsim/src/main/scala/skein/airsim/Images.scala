@@ -4,17 +4,11 @@ import skein.rpc.{Bytes, MessageReader}
 import skein.units.*
 
 /** The kinds of images, with AirSim's numbers. Cosys-AirSim has further kinds. */
-enum ImageKind(val number: Int):
-  case Scene               extends ImageKind(0)
-  case DepthPlanar         extends ImageKind(1)
-  case DepthPerspective    extends ImageKind(2)
-  case DepthVis            extends ImageKind(3)
-  case DisparityNormalized extends ImageKind(4)
-  case Segmentation        extends ImageKind(5)
-  case SurfaceNormals      extends ImageKind(6)
-  case Infrared            extends ImageKind(7)
-  case OpticalFlow         extends ImageKind(8)
-  case OpticalFlowVis      extends ImageKind(9)
+enum ImageKind:
+  case Scene, DepthPlanar, DepthPerspective, DepthVis, DisparityNormalized, Segmentation, SurfaceNormals,
+    Infrared, OpticalFlow, OpticalFlowVis
+
+  def number: Int = ordinal
 
 /** The encodings of an image's pixels on the wire. */
 enum Encoding:

@@ -1,11 +1,11 @@
 package skein.airsim
 
-import scala.concurrent.{ExecutionContext, Future}
+import scala.concurrent.Future
 import skein.airsim.wire.*
 import skein.policy.{Action, Yaw}
 import skein.port.CommandPlan
 import skein.rpc.RpcError
-import skein.signal.{Kinematics, Stamped}
+import skein.signal.Stamped
 import skein.units.*
 import upack.{Arr, Bool, Float64, Int32, Int64, Msg, Str}
 import upickle.default.writeMsg
@@ -24,26 +24,13 @@ final class Multirotor(
 ) extends VehicleClient(client, name, originNed, connectionKey),
       AttitudeMoves:
   import Multirotor.*
-  private given ExecutionContext = ExecutionContext.parasitic
 
   // ---- state
 
-  def kinematics(): Future[Either[RpcError, Stamped[Kinematics]]] = status().map(_.map(_.map(_.kinematics)))
-
   def status(): Future[Either[RpcError, Stamped[MultirotorStatus]]] =
-    stamped("getMultirotorState")((state: MultirotorReading) =>
-      (
-        MultirotorStatus(
-          inWorld(state.kinematics_estimated),
-          flying = state.landed_state == 1,
-          state.skein_missing
-        ),
-        state.timestamp
-      )
-    ).map(_.filterOrElse(
-      _.value.kinematics.isFinite,
-      RpcError.Malformed("getMultirotorState", "expected finite numbers in kinematics_estimated")
-    ))
+    stateOf("getMultirotorState"): (state: MultirotorReading) =>
+      val motion = inWorld(state.kinematics_estimated)
+      (MultirotorStatus(motion, flying = state.landed_state == 1, state.skein_missing), state.timestamp)
 
   /** Lets the vehicle hover at a position above the ground, level and at rest, with its controllers settled;
     * it must be under API control. Only the built-in simulator supports this.

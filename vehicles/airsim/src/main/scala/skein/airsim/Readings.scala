@@ -6,11 +6,16 @@ import skein.units.*
 /** A vehicle's place and orientation, world NED. */
 final case class VehiclePose(positionNed: Vector3, orientation: Quaternion)
 
-/** A multirotor's state as it estimates it itself, which for AirSim's default vehicle is the true state.
-  *
-  * @param isMissing whether its sensors have no reading now, so that `kinematics` are earlier ones
-  */
+/** What the states of all kinds of vehicles have. */
+trait VehicleStatus:
+  def kinematics: Kinematics
+
+  /** Whether its sensors have no reading now, so that `kinematics` are earlier ones. */
+  def isMissing: Boolean
+
+/** A multirotor's state as it estimates it itself, which for AirSim's default vehicle is the true state. */
 final case class MultirotorStatus(kinematics: Kinematics, flying: Boolean, isMissing: Boolean = false)
+    extends VehicleStatus
 
 /** The last contact of a vehicle with another object.
   *

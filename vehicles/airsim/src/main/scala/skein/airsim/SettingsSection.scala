@@ -28,7 +28,7 @@ object SettingsError:
   * ends all reading. Keys that are read are remembered: [[unread]] lists all other keys, so that nothing in a
   * file is ignored silently.
   */
-final private[skein] class SettingsSection private (fields: Obj, path: String, read: SettingsSection.Read):
+final private[skein] class SettingsSection private (fields: Obj, path: String, seen: SettingsSection.Read):
   import SettingsSection.*
 
   def has(key: String): Boolean = value(key).nonEmpty
@@ -37,74 +37,69 @@ final private[skein] class SettingsSection private (fields: Obj, path: String, r
     throw Misfit(SettingsError.Unexpected(at(key), expected, found))
 
   def number(key: String, unless: Double, least: Double = -1e9, most: Double = 1e9): Double =
-    value(key) match
-      case Some(Num(value)) if value >= least && value <= most => value
-      case Some(number: Num) => fail(key, s"a number from ${plain(least)} to ${plain(most)}", number.render())
-      case Some(other)       => fail(key, "a number", kindOf(other))
-      case None              => unless
+    read(key, unless, "a number"):
+      case Num(value) if value >= least && value <= most => value
+      case number: Num => fail(key, s"a number from ${plain(least)} to ${plain(most)}", number.render())
 
   def whole(key: String, unless: Int, least: Int, most: Int): Int =
     val found = number(key, unless, least, most)
     if found.isWhole then found.toInt else fail(key, "a whole number", found.toString)
 
-  def text(key: String, unless: String): String = value(key) match
-    case Some(ujson.Str(value)) => value
-    case Some(other)            => fail(key, "a string", kindOf(other))
-    case None                   => unless
+  def text(key: String, unless: String): String = read(key, unless, "a string"):
+    case ujson.Str(value) => value
 
-  def flag(key: String, unless: Boolean): Boolean = value(key) match
-    case Some(ujson.Bool(value)) => value
-    case Some(other)             => fail(key, "true or false", kindOf(other))
-    case None                    => unless
+  def flag(key: String, unless: Boolean): Boolean = read(key, unless, "true or false"):
+    case ujson.Bool(value) => value
 
   def section(key: String): SettingsSection =
-    value(key).fold(SettingsSection(Obj(), at(key), read))(of(key, _))
+    value(key).fold(SettingsSection(Obj(), at(key), seen))(of(key, _))
 
   /** The subsections by name, in the file's order. */
   def sections(key: String): Vector[(String, SettingsSection)] = section(key).parts
 
   private def parts = fields.value.keysIterator.toVector.map(name => name -> section(name))
 
-  def list(key: String): Vector[SettingsSection] = value(key) match
-    case Some(values: ujson.Arr) => values.value.toVector.zipWithIndex.map((one, i) => of(s"$key[$i]", one))
-    case Some(other)             => fail(key, "an array", kindOf(other))
-    case None                    => Vector.empty
+  def list(key: String): Vector[SettingsSection] = read(key, Vector.empty, "an array"):
+    case values: ujson.Arr => values.value.toVector.zipWithIndex.map((one, i) => of(s"$key[$i]", one))
+
+  private def read[A](key: String, unless: A, expected: String)(found: PartialFunction[Value, A]): A =
+    value(key).fold(unless)(found.applyOrElse(_, other => fail(key, expected, kindOf(other))))
 
   /** A vector with the keys X, Y and Z: NED, m or m/s. */
   def vector: Vector3 = Vector3(number("X", 0), number("Y", 0), number("Z", 0))
 
   /** Counts the whole section as read: a part that is switched off has no effect in AirSim either. */
-  def switchedOff(): Unit = read.all += path
+  def switchedOff(): Unit = seen.all += path
 
   /** Marks every key of the section as unread, whatever was read before. */
-  def passedOver(): Unit = read.none += path
+  def passedOver(): Unit = seen.none += path
 
   /** The paths of all keys that were not read, in the file's order; a section of which nothing was read
     * counts as one path.
     */
   def unread: Vector[String] =
-    if read.all(path) then Vector.empty
-    else if read.none(path) then Vector(path)
+    if seen.all(path) then Vector.empty
+    else if seen.none(path) then Vector(path)
     else
       fields.value.toVector.flatMap: (key, value) =>
-        if !read.keys(at(key)) then Vector(at(key))
+        if !seen.keys(at(key)) then Vector(at(key))
         else
           value match
-            case inner: Obj        => SettingsSection(inner, at(key), read).unread
+            case inner: Obj        => SettingsSection(inner, at(key), seen).unread
             case values: ujson.Arr =>
               values.value.toVector.zipWithIndex.collect { case (inner: Obj, i) =>
-                SettingsSection(inner, at(s"$key[$i]"), read).unread
+                SettingsSection(inner, at(s"$key[$i]"), seen).unread
               }.flatten
             case _ => Vector.empty
 
   private def value(key: String): Option[Value] =
-    read.keys += at(key)
+    seen.keys += at(key)
     fields.value.get(key)
 
   private def at(key: String) = s"$path.$key".stripPrefix(".")
 
   private def of(key: String, value: Value): SettingsSection = value match
-    case inner: Obj => SettingsSection(inner, at(key), read)
+    case inner: Obj => SettingsSection(inner, at(key), seen)
     case other      => fail(key, "an object", kindOf(other))
 
 private[skein] object SettingsSection:

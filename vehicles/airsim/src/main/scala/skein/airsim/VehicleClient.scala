@@ -23,7 +23,7 @@ abstract class VehicleClient private[airsim] (
 
   protected val once: CallOptions   = CallOptions(client.timeout)
   protected val getter: CallOptions = once.copy(idempotent = true)
-  private val sensor                = getter.copy(channel = Channel.Sensors)
+  private val sensors               = getter.copy(channel = Channel.Sensors)
 
   /** Options of calls that keep their order behind every command sent before on the connection. */
   protected val inOrder: CallOptions = once.copy(key = Some(connectionKey))
@@ -34,8 +34,10 @@ abstract class VehicleClient private[airsim] (
 
   // ---- state
 
-  /** The vehicle's position and motion by its own estimate, with the times known so far. */
-  def kinematics(): Future[Either[RpcError, Stamped[Kinematics]]]
+  /** The vehicle's state by its own estimate, with the times known so far. */
+  def status(): Future[Either[RpcError, Stamped[VehicleStatus]]]
+
+  def kinematics(): Future[Either[RpcError, Stamped[Kinematics]]] = status().map(_.map(_.map(_.kinematics)))
 
   /** The vehicle's true motion; AirSim does not state when it was valid. */
   def groundTruth(): Future[Either[RpcError, Kinematics]] =
@@ -60,12 +62,13 @@ abstract class VehicleClient private[airsim] (
       ))
 
   /** The vehicle's start in geographic coordinates. */
-  def home(): Future[Either[RpcError, GeoLocation]] = get[GeoPoint]("getHomeGeoPoint").map(_.map(located))
+  def home(): Future[Either[RpcError, GeoLocation]] =
+    get[GeoPoint]("getHomeGeoPoint").map(_.map(_.toLocation))
 
   // ---- sensors; an empty name means the first of its kind
 
   def imu(sensor: String = ""): Future[Either[RpcError, Stamped[ImuReading]]] =
-    measured("getImuData", Str(sensor)): (data: ImuData) =>
+    stamped("getImuData", Seq(Str(sensor)), sensors): (data: ImuData) =>
       val reading = ImuReading(
         data.orientation.toQuaternion,
         data.angular_velocity.toVector,
@@ -74,17 +77,17 @@ abstract class VehicleClient private[airsim] (
       (reading, data.time_stamp)
 
   def gps(sensor: String = ""): Future[Either[RpcError, Stamped[GpsReading]]] =
-    measured("getGpsData", Str(sensor)): (data: GpsData) =>
-      val reading = GpsReading(located(data.gnss.geo_point), data.gnss.velocity.toVector, data.is_valid)
+    stamped("getGpsData", Seq(Str(sensor)), sensors): (data: GpsData) =>
+      val reading = GpsReading(data.gnss.geo_point.toLocation, data.gnss.velocity.toVector, data.is_valid)
       (reading, data.time_stamp)
 
   def barometer(sensor: String = ""): Future[Either[RpcError, Stamped[BarometerReading]]] =
-    measured("getBarometerData", Str(sensor)): (data: BarometerData) =>
+    stamped("getBarometerData", Seq(Str(sensor)), sensors): (data: BarometerData) =>
       (BarometerReading(Metres(data.altitude), data.pressure), data.time_stamp)
 
   /** Magnetic field, body FRD, gauss. */
   def magnetometer(sensor: String = ""): Future[Either[RpcError, Stamped[Vector3]]] =
-    measured("getMagnetometerData", Str(sensor)): (data: MagnetometerData) =>
+    stamped("getMagnetometerData", Seq(Str(sensor)), sensors): (data: MagnetometerData) =>
       (data.magnetic_field_body.toVector, data.time_stamp)
 
   // ---- control
@@ -121,15 +124,11 @@ abstract class VehicleClient private[airsim] (
     client.rpc.callAs[A](method, params :+ Str(name), options)
 
   /** Calls a getter whose answer states when it was valid. */
-  protected def stamped[A: Reader, B](method: String, params: Msg*)(
-      read: A => (B, Instant)
-  ): Future[Either[RpcError, Stamped[B]]] = asked(getter, method, params)(read)
-
-  private def measured[A: Reader, B](method: String, params: Msg*)(
-      read: A => (B, Instant)
-  ): Future[Either[RpcError, Stamped[B]]] = asked(sensor, method, params)(read)
-
-  private def asked[A: Reader, B](options: CallOptions, method: String, params: Seq[Msg])(
+  protected def stamped[A: Reader, B](
+      method: String,
+      params: Seq[Msg] = Seq(),
+      options: CallOptions = getter
+  )(
       read: A => (B, Instant)
   ): Future[Either[RpcError, Stamped[B]]] =
     client.rpc
@@ -138,8 +137,16 @@ abstract class VehicleClient private[airsim] (
         val (value, validAt) = read(answer.value)
         Stamped(value, validAt, answer.sentAt, answer.receivedAt))
 
+  /** Calls for the state of a vehicle, whose numbers must be finite. */
+  protected def stateOf[A: Reader, S <: VehicleStatus](method: String)(
+      read: A => (S, Instant)
+  ): Future[Either[RpcError, Stamped[S]]] = stamped(method)(read).map(_.filterOrElse(
+    _.value.kinematics.isFinite,
+    RpcError.Malformed(method, "expected finite numbers in kinematics_estimated")
+  ))
+
   protected def own(pose: VehiclePose): Msg =
-    writeMsg(Pose(Vector3r(pose.positionNed - originNed), Quaternionr(pose.orientation)))
+    writeMsg(Pose(pose.positionNed - originNed, pose.orientation))
 
   protected def inWorld(state: KinematicsState): Kinematics =
     Kinematics(
@@ -148,9 +155,6 @@ abstract class VehicleClient private[airsim] (
       state.orientation.toQuaternion,
       state.angular_velocity.toVector
     )
-
-  private def located(point: GeoPoint): GeoLocation =
-    GeoLocation(point.latitude, point.longitude, Metres(point.altitude))
 
   protected def real(value: Double): Msg = Float32(value.toFloat)
 

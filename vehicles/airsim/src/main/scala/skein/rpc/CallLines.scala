@@ -110,21 +110,17 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
   def forget(connection: Long): Unit =
     val line = lines.remove(connection)
     if line != null then
-      var place = line.calls.poll()
-      while place != null do
+      for place <- Iterator.continually(line.calls.poll()).takeWhile(_ != null) do
         place.isTaken = true
         gone.increment()
-        place = line.calls.poll()
 
   /** Moves newly filled queues into the round, and begins a round when the last has ended. */
   private def sort(): Unit =
-    var line = came.poll()
-    while line != null do
+    for line <- Iterator.continually(came.poll()).takeWhile(_ != null) do
       if line.round != round then
         line.round = round
         line.taken = 0
       (if line.taken < share then first else later).add(line): Unit
-      line = came.poll()
     if first.isEmpty && turns.isEmpty && !later.isEmpty then
       round += 1
       val over = turns

@@ -88,10 +88,9 @@ private[rpc] final class ChannelStage(
       stoppedDone.future
 
     private def cancelInbox(): Unit =
-      var call = inbox.poll()
-      while call != null do
-        reject(call, RpcError.Cancelled(call.method))
-        call = inbox.poll()
+      for call <- waitingCalls do reject(call, RpcError.Cancelled(call.method))
+
+    private def waitingCalls: Iterator[Call] = Iterator.continually(inbox.poll()).takeWhile(_ != null)
 
     private def reject(call: Call, error: RpcError): Unit =
       counters.failed(error)
@@ -138,11 +137,8 @@ private[rpc] final class ChannelStage(
       if !started then
         started = true
         connections.foreach(_.open())
-      val now  = clock.now()
-      var call = inbox.poll()
-      while call != null do
-        state.submit(call, now)
-        call = inbox.poll()
+      val now = clock.now()
+      waitingCalls.foreach(state.submit(_, now))
       settle()
 
     private def withdrawNow(call: Call): Unit =

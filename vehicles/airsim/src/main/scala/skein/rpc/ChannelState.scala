@@ -231,15 +231,11 @@ private[rpc] final class ChannelState(
     connections(connection).up && connections(connection).inFlight.size < settings.windowPerConnection
 
   private def leastLoaded: Int =
-    var best = NoPlace
-    var i    = 0
-    while i < connections.length do
-      val candidate = (rotation + i) % connections.length
-      if hasPlace(candidate) &&
-        (best == NoPlace || connections(candidate).inFlight.size < connections(best).inFlight.size)
-      then best = candidate
-      i += 1
-    best
+    Iterator
+      .tabulate(connections.length)(i => (rotation + i) % connections.length)
+      .filter(hasPlace)
+      .minByOption(connections(_).inFlight.size)
+      .getOrElse(NoPlace)
 
   private def assign(call: Call, connection: Int): Unit =
     val slot = connections(connection)
@@ -252,14 +248,12 @@ private[rpc] final class ChannelState(
 
   /** Sends waiting calls, oldest first, while there is room. */
   private def dispatch(): Unit =
-    var next = if waiting > 0 then oldestWithPlace else None
-    while next.nonEmpty do
-      for call <- next do
-        val place = placeFor(call)
-        val _     = lineOf(call).remove(call)
-        waiting -= 1
-        assign(call, place)
-      next = if waiting > 0 then oldestWithPlace else None
+    def next = if waiting > 0 then oldestWithPlace else None
+    for call <- Iterator.continually(next).takeWhile(_.nonEmpty).flatten do
+      val place = placeFor(call)
+      val _     = lineOf(call).remove(call)
+      waiting -= 1
+      assign(call, place)
 
   private def oldestWithPlace: Option[Call] =
     val heads = (unkeyed +: connections.map(_.keyed)).iterator.filterNot(_.isEmpty).map(_.first)

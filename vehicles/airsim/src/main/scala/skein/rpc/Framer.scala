@@ -220,8 +220,8 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
     frameStart = position
     frame
 
-private object Framer:
-  private val NeverUsed      = 0xc1
+private[rpc] object Framer:
+  val NeverUsed              = 0xc1
   private val MaxHeader      = 5 // a marker and a length of up to four bytes
   private val CrumbsCapacity = 4096
   private val EmptySegment   = Array.emptyByteArray
@@ -233,14 +233,14 @@ private object Framer:
   private final class Refused(reason: String) extends RuntimeException(reason, null, false, false)
 
   /** Number of length bytes that follow the marker. */
-  private def lengthBytes(marker: Int): Int = marker match
+  def lengthBytes(marker: Int): Int = marker match
     case 0xc4 | 0xc7 | 0xd9               => 1
     case 0xc5 | 0xc8 | 0xda | 0xdc | 0xde => 2
     case 0xc6 | 0xc9 | 0xdb | 0xdd | 0xdf => 4
     case _                                => 0
 
   /** Number of values in a container; 0 for anything else. */
-  private def childCount(marker: Int, size: Long): Long = marker match
+  def childCount(marker: Int, size: Long): Long = marker match
     case 0xdc | 0xdd                 => size
     case 0xde | 0xdf                 => 2 * size
     case m if m >= 0x90 && m <= 0x9f => m & 0x0f
@@ -250,7 +250,7 @@ private object Framer:
   private def isMap(marker: Int): Boolean = (marker & 0xf0) == 0x80 || marker == 0xde || marker == 0xdf
 
   /** Number of bytes between the header and the end of the value. */
-  private def payloadBytes(marker: Int, size: Long): Long = marker match
+  def payloadBytes(marker: Int, size: Long): Long = marker match
     case 0xcc | 0xd0                             => 1
     case 0xcd | 0xd1                             => 2
     case 0xca | 0xce | 0xd2                      => 4

@@ -115,29 +115,11 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
   def skip(): Unit =
     var left = 1L
     while left > 0 do
-      left -= 1
-      header() match
-        case m if m < 0x80 || m >= 0xe0  => ()
-        case m if (m & 0xf0) == 0x80     => left += 2L * (m & 0x0f)
-        case m if (m & 0xf0) == 0x90     => left += m & 0x0f
-        case m if (m & 0xe0) == 0xa0     => pass(m & 0x1f)
-        case 0xc0 | 0xc2 | 0xc3          => ()
-        case 0xc4 | 0xd9                 => pass(size(1, least = 1))
-        case 0xc5 | 0xda                 => pass(size(2, least = 1))
-        case 0xc6 | 0xdb                 => pass(size(4, least = 1))
-        case 0xc7                        => pass(size(1, least = 1) + 1)
-        case 0xc8                        => pass(size(2, least = 1) + 1)
-        case 0xc9                        => pass(size(4, least = 1) + 1)
-        case 0xcc | 0xd0                 => pass(1)
-        case 0xcd | 0xd1                 => pass(2)
-        case 0xca | 0xce | 0xd2          => pass(4)
-        case 0xcb | 0xcf | 0xd3          => pass(8)
-        case m if m >= 0xd4 && m <= 0xd8 => pass(1 + (1 << (m - 0xd4)))
-        case 0xdc                        => left += size(2, least = 1)
-        case 0xdd                        => left += size(4, least = 1)
-        case 0xde                        => left += 2L * size(2, least = 2)
-        case 0xdf                        => left += 2L * size(4, least = 2)
-        case other                       => unexpected("a value", other)
+      val marker = header()
+      if marker == Framer.NeverUsed then unexpected("a value", marker)
+      val size = take(Framer.lengthBytes(marker))
+      pass(Framer.payloadBytes(marker, size))
+      left += Framer.childCount(marker, size) - 1
 
   /** The next value and all that follows, without a copy. */
   private[rpc] def rest: Received = Received(bytes, at)
@@ -168,9 +150,9 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
     at += count
     value
 
-  private def pass(count: Int): Unit =
+  private def pass(count: Long): Unit =
     need(count)
-    at += count
+    at += count.toInt
 
   /** Reads a length, refusing one whose elements, of at least `least` bytes each, cannot fit the bytes left:
     * so nothing is allocated for them.
@@ -181,7 +163,7 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
       throw Unexpected(s"expected $length more values or bytes, got ${end - at} bytes")
     length.toInt
 
-  private def need(count: Int): Unit =
+  private def need(count: Long): Unit =
     if end - at < count then throw Unexpected(s"expected $count more bytes, got ${end - at}")
 
   private def unexpected(what: String, marker: Int): Nothing =

@@ -26,13 +26,6 @@ final class MessageWriter:
     array(params.length)
     params.foreach(value)
 
-  def notification(method: String, params: Seq[Msg]): Unit =
-    byte(0x93)
-    byte(2)
-    string(method)
-    array(params.length)
-    params.foreach(value)
-
   /** A reply: `Left` fills the error slot, `Right` the result. */
   def reply(id: Long, outcome: Either[String, Msg | Encoded]): Unit =
     byte(0x94)
@@ -119,6 +112,16 @@ final class MessageWriter:
       for (key, item) <- entries do
         value(key)
         value(item)
+
+  /** Writes a map with names as keys.
+    *
+    * @param large writes the values of some keys in place of those in the map
+    */
+  def structure(fields: Msg)(large: PartialFunction[String, Unit]): Unit =
+    map(fields.obj.size)
+    for (name, item) <- fields.obj do
+      value(name)
+      large.applyOrElse(name.str, _ => value(item))
 
   private def integer(v: Long): Unit =
     if v >= -32 && v <= 127 then byte(v.toInt)

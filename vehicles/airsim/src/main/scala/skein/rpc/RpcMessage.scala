@@ -40,41 +40,22 @@ object RpcMessage:
         case length => Right(Ignored(s"an array of $length"))
     case other => Right(Ignored(kindOf(other)))
 
-  /** The id of an encoded request, read without decoding the rest; None if it is not a request. */
-  private[rpc] def requestId(frame: Array[Byte]): Option[Long] =
-    def at(i: Int): Int = frame(i) & 0xff
-    // An array of four, short or long; a type, which may be any number; an id.
-    val start = at(0) match
-      case 0x94                                                         => 1
-      case 0xdc if at(1) == 0 && at(2) == 4                             => 3
-      case 0xdd if at(1) == 0 && at(2) == 0 && at(3) == 0 && at(4) == 4 => 5
-      case _                                                            => 0
-    Option.when(start > 0 && at(start) < 0x80)(start + 1).flatMap: id =>
-      val bytes = at(id) match
-        case 0xcc => 1
-        case 0xcd => 2
-        case 0xce => 4
-        case _    => 0
-      if at(id) < 0x80 then Some(at(id).toLong)
-      else Option.when(bytes > 0)((1 to bytes).foldLeft(0L)((value, i) => value << 8 | at(id + i)))
-
   /** The id of a request or a reply of which only the beginning is known. */
-  private[skein] def idIn(beginning: Array[Byte]): Option[Long] =
-    val reader = MessageReader.of(beginning)
-    MessageReader.attempt:
-      val length = reader.array()
-      reader.skip()
-      Option.when(length == 4)(reader.long())
-    .toOption.flatten
+  private[skein] def idIn(beginning: Array[Byte]): Option[Long] = headIn(beginning)((id, _) => id)
 
   /** Id and method of a request of which only the beginning is known; without an id, of a notification. */
   private[skein] def headOf(beginning: Array[Byte]): Option[(id: Option[Long], method: String)] =
+    headIn(beginning)((id, rest) => Some((id = id, method = rest.string())))
+
+  /** Reads what follows the type, without decoding the rest. */
+  private def headIn[A](beginning: Array[Byte])(read: (Option[Long], MessageReader) => Option[A]): Option[A] =
     val reader = MessageReader.of(beginning)
     MessageReader.attempt:
       val length = reader.array()
       reader.skip()
-      val id = Option.when(length == 4)(reader.long())
-      Option.when(length == 3 || length == 4)((id = id, method = reader.string()))
+      if length == 4 then read(Some(reader.long()), reader)
+      else if length == 3 then read(None, reader)
+      else None
     .toOption.flatten
 
   def fromServer(frame: Array[Byte]): RpcMessage = decode(frame):

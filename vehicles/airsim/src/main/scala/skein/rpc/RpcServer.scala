@@ -37,14 +37,12 @@ object RpcServer:
   /** Serves `handler` at `at`; the future fails if that cannot be bound. Malformed input closes its own
     * connection, with a reason that is logged, counted and passed to the observer, and affects no other.
     *
-    * @param failureText the error text for a request whose handler throws or fails
     * @param observer called with every event on the connections' threads; it must be quick and throw nothing
     */
   def bind(
       transport: Transport,
       at: Address,
       limits: ServerLimits = ServerLimits(),
-      failureText: (RpcRequest, Throwable) => String = rpclibFailure,
       observer: ServerEvent => Unit = _ => ()
   )(handler: RpcHandler)(using system: ActorSystem): Future[RpcServer] =
     val holdings = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
@@ -74,7 +72,7 @@ object RpcServer:
       val connection = counters.nextConnection()
       observe(ServerEvent.Opened(connection, incoming.from))
       val stage =
-        ServerConnection(connection, limits, handler, failureText, counters, holdings, turns, places, observe)
+        ServerConnection(connection, limits, handler, counters, holdings, turns, places, observe)
       try
         val _ = incoming.flow.join(Flow.fromGraph(stage).via(stop.flow)).run()
       catch
@@ -95,12 +93,6 @@ object RpcServer:
       stop.shutdown()
       failed.success(failure)
     listening.map(RpcServer(_, counters, failed.future, () => stop.shutdown()))
-
-  /** The error text of AirSim's server for a function that throws. */
-  def rpclibFailure(request: RpcRequest, failure: Throwable): String =
-    val text = Option(failure.getMessage).getOrElse(failure.toString)
-    s"rpclib: function '${request.method}' (called with ${request.params.length} " +
-      s"arg(s)) threw an exception. The exception contained this information: $text."
 
   /** Maximum number of closed and refused connections that are logged one by one; later ones are only
     * counted.

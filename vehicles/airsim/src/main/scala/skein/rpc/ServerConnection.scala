@@ -28,7 +28,6 @@ private[rpc] final class ServerConnection(
     connection: Long,
     limits: ServerLimits,
     handler: RpcHandler,
-    failureText: (RpcRequest, Throwable) => String,
     counters: ServerCounters,
     holdings: Holdings,
     turns: Holdings,
@@ -214,7 +213,7 @@ private[rpc] final class ServerConnection(
           backFor = 0
           counters.lacking.increment()
           // Not decoded: decoding needs the memory that is lacking.
-          RpcMessage.requestId(frame) match
+          RpcMessage.idIn(frame).filter(id => id >= 0 && id <= RpcMessage.MaxId) match
             case Some(id) =>
               counters.requests.increment()
               counters.refused.increment()
@@ -263,10 +262,7 @@ private[rpc] final class ServerConnection(
 
       private def collect(): Unit =
         scheduled.set(false)
-        var outcome = done.poll()
-        while outcome != null do
-          finish(outcome)
-          outcome = done.poll()
+        Iterator.continually(done.poll()).takeWhile(_ != null).foreach(finish)
         proceed()
 
       private def finish(outcome: Outcome): Unit =
@@ -275,7 +271,9 @@ private[rpc] final class ServerConnection(
         if outcome.id != NoReply then
           val reply = outcome.result match
             case Success(answer)  => answer
-            case Failure(failure) => Left(failureText(outcome.request, failure))
+            case Failure(failure) =>
+              val text = Option(failure.getMessage).getOrElse(failure.toString)
+              Left(Rpclib.threw(outcome.request.method, outcome.request.params.length, text))
           val before = writer.length
           writer.reply(outcome.id, reply)
           val size    = writer.length - before

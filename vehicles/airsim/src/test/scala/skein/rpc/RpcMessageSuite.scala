@@ -34,6 +34,13 @@ class RpcMessageSuite extends munit.FunSuite:
     )
     assertEquals(RpcMessage.headOf(Wire.pack(Obj())), None)
 
+  test("an id is read in every form of an integer; a notification has none"):
+    val forms = Seq("07", "cc07", "cd0007", "ce00000007", "cf0000000000000007", "d007", "d30000000000000007")
+    for array <- Seq("94", "dc0004", "dd00000004"); id <- forms do
+      val call = java.util.HexFormat.of.parseHex(s"${array}00${id}a16190")
+      assertEquals(RpcMessage.idIn(call), Some(7L), id)
+    assertEquals(RpcMessage.idIn(Wire.pack(Arr(Int32(2), Str("ping"), Arr()))), None)
+
   test("integers take their shortest form at every boundary"):
     val edges = (0 to 63).flatMap(bit => Seq(1L << bit, (1L << bit) - 1, -(1L << bit), -(1L << bit) - 1))
     for edge <- edges do
@@ -52,7 +59,7 @@ class RpcMessageSuite extends munit.FunSuite:
   test("all messages written since the last take are taken together, once"):
     val writer = MessageWriter()
     writer.request(1, "a", Seq(Binary(new Array[Byte](100_000))))
-    writer.notification("b", Seq(Null))
+    writer.request(2, "b", Seq(Null))
     writer.reply(2, Left("no"))
     val length = writer.length
     val taken  = writer.take()
@@ -61,8 +68,9 @@ class RpcMessageSuite extends munit.FunSuite:
     val frames = Wire.framed(Framer(), Seq(taken)).collect { case Framed.Complete(bytes) => bytes }
     assertEquals(
       frames.map(RpcMessage.fromClient).map(_.productPrefix),
-      Seq("Request", "Notification", "Request")
+      Seq("Request", "Request", "Request")
     )
+    assertEquals(RpcMessage.fromClient(Wire.notification("c")).productPrefix, "Notification")
 
   test("requests and notifications are distinguished by their length, whatever the type field is"):
     val params = Arr(Int32(1))

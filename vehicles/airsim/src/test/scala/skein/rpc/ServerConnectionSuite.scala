@@ -37,7 +37,6 @@ class ServerConnectionSuite extends munit.FunSuite:
         1,
         limits,
         handler,
-        RpcServer.rpclibFailure,
         counters,
         holdings,
         turns,

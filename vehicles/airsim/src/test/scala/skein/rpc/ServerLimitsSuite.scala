@@ -41,7 +41,6 @@ class ServerLimitsSuite extends munit.FunSuite:
           number,
           limits,
           handler,
-          RpcServer.rpclibFailure,
           counters,
           holdings,
           turns,

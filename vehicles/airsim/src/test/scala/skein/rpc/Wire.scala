@@ -27,6 +27,8 @@ object Wire:
     case Arr(items)  => ValueFactory.newArray(items.map(toValue).asJava)
     case Obj(pairs)  => ValueFactory.newMap(pairs.map((k, v) => toValue(k) -> toValue(v)).toMap.asJava)
 
+  def notification(method: String, params: Msg*): Array[Byte] = pack(Arr(Int32(2), Str(method), Arr(params*)))
+
   def pack(msg: Msg): Array[Byte] =
     val out    = ByteArrayOutputStream()
     val packer = MessagePack.newDefaultPacker(out)

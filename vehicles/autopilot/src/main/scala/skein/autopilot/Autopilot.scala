@@ -1,6 +1,7 @@
 package skein.autopilot
 
 import skein.mavlink.*
+import skein.policy.{ActionGuidance, Yaw}
 import skein.units.*
 import skein.vehicle.{GoTo, Setpoint}
 
@@ -29,7 +30,7 @@ final case class Autopilot(
     mission: Mission = Mission(),
     upload: Option[Upload] = None,
     anchor: Vector3 = Vector3.Zero,
-    turn: OffboardSetpoint.Turn = OffboardSetpoint.Turn.None,
+    yaw: Yaw = Yaw.Still,
     enteredAt: Span = Span.Zero,
     target: Option[OffboardSetpoint] = None,
     heardAt: Option[Span] = None,
@@ -207,10 +208,10 @@ final case class Autopilot(
           if place.y.isFinite then place.y else here.y,
           if place.z.isFinite then place.z else here.z
         )
-        val yaw    = order.numbers(3)
+        val heading = order.numbers(3)
         val isAfar = Vector(goal.x, goal.y, goal.z).exists(metres => math.abs(metres) > OffboardSetpoint.Most)
         val isGlobe = !(math.abs(order.numbers(4)) > 90) && !(math.abs(order.numbers(5)) > 180)
-        if isAfar || !isGlobe || math.abs(yaw) > OffboardSetpoint.Most then
+        if isAfar || !isGlobe || math.abs(heading) > OffboardSetpoint.Most then
           Left(Refusal(
             Result.Denied,
             s"reposition: expected a place within ${OffboardSetpoint.Most.toInt} m and a yaw",
@@ -222,7 +223,7 @@ final case class Autopilot(
               heard.next.copy(
                 anchor = goal,
                 cruise = Some(order.numbers(0).min(Parameters.Cruise.most)).filter(_ > 0).orElse(cruise),
-                turn = if yaw.isFinite then OffboardSetpoint.Turn.Towards(yaw) else OffboardSetpoint.Turn.None
+                yaw = if heading.isFinite then Yaw.Towards(Radians(heading)) else Yaw.Still
               )
             )
           )
@@ -243,7 +244,7 @@ final case class Autopilot(
             enteredAt = motion.sinceBoot,
             // A vehicle that already holds keeps its position.
             anchor = if mode == FlightMode.Hold && wanted == mode then anchor else motion.state.positionNed,
-            turn = OffboardSetpoint.Turn.None,
+            yaw = Yaw.Still,
             stillSince = None,
             mission = again
           )
@@ -288,7 +289,7 @@ final case class Autopilot(
     mode = FlightMode.Hold,
     enteredAt = motion.sinceBoot,
     anchor = motion.state.positionNed,
-    turn = OffboardSetpoint.Turn.None
+    yaw = Yaw.Still
   )
 
   private def followed(motion: VehicleMotion): (Autopilot, Vector[Message]) = mission.item match
@@ -339,9 +340,9 @@ final case class Autopilot(
   private def goal(motion: VehicleMotion): Option[Setpoint] =
     val here  = motion.state.positionNed
     val speed = MetresPerSecond(cruise.getOrElse(parameters(Parameters.Cruise)).max(0.1))
-    def to(place: Vector3, yaw: OffboardSetpoint.Turn) =
+    def to(place: Vector3, yaw: Yaw) =
       val velocity = GoTo.velocityNed(here, motion.state.velocityNed, place, speed)
-      OffboardSetpoint.turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw)
+      ActionGuidance.turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw, Vector3.Zero)
     def over(place: Vector3, downMps: Double) =
       val velocity = GoTo.velocityNed(here, motion.state.velocityNed, place.copy(z = here.z), speed)
       Setpoint.velocity(velocity.x, velocity.y, downMps)
@@ -353,7 +354,7 @@ final case class Autopilot(
           val up = parameters(Parameters.TakeoffSpeed)
           over(anchor, ((anchor.z - here.z) * 1.2).max(-up).min(up))
         case FlightMode.Hold | FlightMode.Land if !motion.isFlying => Setpoint.Armed
-        case FlightMode.Hold                                       => to(anchor, turn)
+        case FlightMode.Hold                                       => to(anchor, yaw)
         case FlightMode.Land                                       =>
           val hasTouched = stillSince.exists(since => (motion.sinceBoot - since) >= TouchedAfter)
           if hasTouched then Setpoint.Armed else over(anchor, parameters(Parameters.LandSpeed))
@@ -362,20 +363,20 @@ final case class Autopilot(
           val away   = here.copy(z = 0).norm
           // First up, then across; a vehicle that is near already descends in place.
           if away > NearHomeM && here.z > height + 1 then over(anchor, -parameters(Parameters.TakeoffSpeed))
-          else to(Vector3.Zero.copy(z = here.z), OffboardSetpoint.Turn.None)
+          else to(Vector3.Zero.copy(z = here.z), Yaw.Still)
         case FlightMode.Mission if !motion.isFlying =>
           Setpoint.velocity(0, 0, -parameters(Parameters.TakeoffSpeed))
         case FlightMode.Mission =>
-          mission.item.fold(to(anchor, turn)): item =>
+          mission.item.fold(to(anchor, yaw)): item =>
             item.command match
               case Command.Waypoint | Command.LoiterTime | Command.LoiterUnlimited | Command.Takeoff =>
                 to(Mission.place(item, home, anchor), yawOf(item))
               case Command.Land => to(Mission.place(item, home, anchor).copy(z = here.z), yawOf(item))
-              case _            => to(anchor, turn))
+              case _            => to(anchor, yaw))
 
-  private def yawOf(item: MissionItemInt): OffboardSetpoint.Turn =
-    if item.param4.isFinite then OffboardSetpoint.Turn.Towards(math.toRadians(item.param4))
-    else OffboardSetpoint.Turn.None
+  private def yawOf(item: MissionItemInt): Yaw =
+    if item.param4.isFinite then Yaw.Towards(Radians(math.toRadians(item.param4)))
+    else Yaw.Still
 
 object Autopilot:
   /** The result of a message or of passing time.

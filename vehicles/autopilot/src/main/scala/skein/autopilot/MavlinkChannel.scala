@@ -38,9 +38,7 @@ final class MavlinkChannel(
     if isDatagrams then reader.readDatagram(bytes) else reader.read(bytes)
 
   /** Frames from the peer with a wrong checksum, an unknown message or invalid content. */
-  def damaged: Long =
-    val counts = reader.counts
-    counts.badChecksum + counts.unknown + counts.notUnderstood
+  def damaged: Long = reader.counts.damaged
 
   /** Changes the interval of a message.
     *

@@ -1,6 +1,7 @@
 package skein.autopilot
 
 import skein.mavlink.*
+import skein.policy.{ActionGuidance, Yaw}
 import skein.units.*
 import skein.units.Decimals.fixed
 import skein.vehicle.{GoTo, Setpoint}
@@ -18,7 +19,7 @@ enum OffboardSetpoint:
       down: Option[Double],
       velocity: (Option[Double], Option[Double], Option[Double]),
       inBody: Boolean,
-      turn: OffboardSetpoint.Turn
+      yaw: Yaw
   )
 
   /** Attitude with a thrust; thrust is a fraction of full thrust. */
@@ -28,11 +29,6 @@ enum OffboardSetpoint:
   case Rates(rollRadps: Double, pitchRadps: Double, yawRadps: Double, thrust: Double)
 
 object OffboardSetpoint:
-  enum Turn:
-    case None
-    case Towards(yawRad: Double)
-    case Turning(radps: Double)
-
   /** Reads a setpoint from a message.
     *
     * @param home the origin of the vehicle's own frame
@@ -149,7 +145,9 @@ object OffboardSetpoint:
         place(2),
         (velocity(0), velocity(1), velocity(2)),
         inBody,
-        turn.map(Turn.Towards(_)).orElse(rate.map(Turn.Turning(_))).getOrElse(Turn.None)
+        turn.map(heading => Yaw.Towards(Radians(heading))).orElse(rate.map(Yaw.Turning(_))).getOrElse(
+          Yaw.Still
+        )
       ))
 
   extension (move: OffboardSetpoint.Move)
@@ -167,12 +165,9 @@ object OffboardSetpoint:
         val state        = motion.state
         val (vn, ve, vd) = move.velocity
         val asked        = Vector3(vn.getOrElse(0), ve.getOrElse(0), vd.getOrElse(0))
-        val yaw          = state.orientation.yawRad
-        val velocity     =
-          if move.inBody then
-            Quaternion(StrictMath.cos(yaw / 2), 0, 0, StrictMath.sin(yaw / 2)).toWorld(asked)
-          else asked
-        val goal = Vector3(
+        val heading      = Quaternion.ofYaw(state.orientation.yawRad)
+        val velocity     = if move.inBody then heading.toWorld(asked) else asked
+        val goal         = Vector3(
           move.north.getOrElse(state.positionNed.x),
           move.east.getOrElse(state.positionNed.y),
           move.down.getOrElse(state.positionNed.z)
@@ -186,9 +181,4 @@ object OffboardSetpoint:
           case Some(down) if byPlane => Setpoint.velocityZ(north, east, down)
           case Some(_)               => Setpoint.velocity(north, east, velocity.z + towards.z)
           case None                  => Setpoint.velocity(north, east, velocity.z)
-        turned(setpoint, move.turn)
-
-  private[autopilot] def turned(setpoint: Setpoint, turn: Turn): Setpoint = turn match
-    case Turn.None           => setpoint
-    case Turn.Towards(yaw)   => setpoint.withYaw(yaw)
-    case Turn.Turning(radps) => setpoint.withYawRate(radps)
+        ActionGuidance.turned(setpoint, move.yaw, Vector3.Zero)

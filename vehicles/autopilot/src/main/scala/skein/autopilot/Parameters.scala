@@ -43,57 +43,48 @@ final case class Parameters(values: Map[String, Double] = Parameters.defaults):
 
 /** A parameter with its default and range.
   *
+  * @param name PX4's name
   * @param default the default value, in the unit of PX4's reference
   */
-final case class Parameter(
-    name: String,
-    default: Double,
-    least: Double,
-    most: Double,
-    isInteger: Boolean = false
-)
+enum Parameter(
+    val name: String,
+    val default: Double,
+    val least: Double,
+    val most: Double,
+    val isInteger: Boolean = false
+):
+  /** Height of a takeoff, m above the ground. */
+  case TakeoffAltitude extends Parameter("MIS_TAKEOFF_ALT", 2.5, 0.5, 500)
+
+  /** Speeds of flights to positions, of takeoff and of landing, m/s. */
+  case Cruise       extends Parameter("MPC_XY_CRUISE", 5, 0.5, 20)
+  case TakeoffSpeed extends Parameter("MPC_TKO_SPEED", 1.5, 0.3, 5)
+  case LandSpeed    extends Parameter("MPC_LAND_SPEED", 0.7, 0.2, 2)
+
+  /** Height at which the vehicle returns, m above home. */
+  case ReturnAltitude extends Parameter("RTL_RETURN_ALT", 30, 0, 500)
+
+  /** A waypoint is reached within this distance, m. */
+  case AcceptanceRadius extends Parameter("NAV_ACC_RAD", 2, 0.2, 200)
+
+  /** Time after the last setpoint at which offboard ends, s. */
+  case OffboardLoss extends Parameter("COM_OF_LOSS_T", 1, 0.1, 60)
+
+  /** Time after which the vehicle disarms when it has landed, or was armed and did not take off, s; negative:
+    * never.
+    */
+  case DisarmLanded    extends Parameter("COM_DISARM_LAND", 2, -1, 20)
+  case DisarmPreflight extends Parameter("COM_DISARM_PRFLT", 10, -1, 600)
+
+  /** Has no effect; ground stations read it. */
+  case Airframe extends Parameter("SYS_AUTOSTART", 4001, 4001, 4001, isInteger = true)
 
 object Parameters:
   private val Int32  = 6
   private val Real32 = 9
 
-  /** Height of a takeoff, m above the ground. */
-  val TakeoffAltitude = Parameter("MIS_TAKEOFF_ALT", 2.5, 0.5, 500)
+  export Parameter.*
 
-  /** Speeds of flights to positions, of takeoff and of landing, m/s. */
-  val Cruise       = Parameter("MPC_XY_CRUISE", 5, 0.5, 20)
-  val TakeoffSpeed = Parameter("MPC_TKO_SPEED", 1.5, 0.3, 5)
-  val LandSpeed    = Parameter("MPC_LAND_SPEED", 0.7, 0.2, 2)
-
-  /** Height at which the vehicle returns, m above home. */
-  val ReturnAltitude = Parameter("RTL_RETURN_ALT", 30, 0, 500)
-
-  /** A waypoint is reached within this distance, m. */
-  val AcceptanceRadius = Parameter("NAV_ACC_RAD", 2, 0.2, 200)
-
-  /** Time after the last setpoint at which offboard ends, s. */
-  val OffboardLoss = Parameter("COM_OF_LOSS_T", 1, 0.1, 60)
-
-  /** Time after which the vehicle disarms when it has landed, or was armed and did not take off, s; negative:
-    * never.
-    */
-  val DisarmLanded    = Parameter("COM_DISARM_LAND", 2, -1, 20)
-  val DisarmPreflight = Parameter("COM_DISARM_PRFLT", 10, -1, 600)
-
-  /** Has no effect; ground stations read it. */
-  val Airframe = Parameter("SYS_AUTOSTART", 4001, 4001, 4001, isInteger = true)
-
-  val known: Vector[Parameter] = Vector(
-    TakeoffAltitude,
-    Cruise,
-    TakeoffSpeed,
-    LandSpeed,
-    ReturnAltitude,
-    AcceptanceRadius,
-    OffboardLoss,
-    DisarmLanded,
-    DisarmPreflight,
-    Airframe
-  )
+  val known: Vector[Parameter] = Parameter.values.toVector
 
   private val defaults: Map[String, Double] = known.map(one => one.name -> one.default).toMap

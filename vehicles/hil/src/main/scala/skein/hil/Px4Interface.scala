@@ -89,9 +89,7 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
 
   def losses: Int = trust.losses
 
-  def damaged: Long =
-    val counts = reader.counts
-    counts.badChecksum + counts.unknown + counts.notUnderstood
+  def damaged: Long = reader.counts.damaged
 
   def sense(truth: SensorTruth): Vector[Array[Byte]] =
     val messages =

@@ -2,6 +2,7 @@ package skein.mavlink
 
 import java.nio.{ByteBuffer, ByteOrder}
 import java.nio.charset.StandardCharsets.US_ASCII
+import scala.annotation.publicInBinary
 import scala.compiletime.{constValue, constValueTuple}
 import scala.deriving.Mirror
 import scala.reflect.ClassTag
@@ -9,7 +10,7 @@ import scala.reflect.ClassTag
 /** One kind of message: its number, its name and the layout of its fields in a payload. On the wire the
   * fields are ordered by the size of their elements, the greatest first, and extensions follow as published.
   */
-final class Definition[A <: Message] private (
+final class Definition[A <: Message] @publicInBinary private[mavlink] (
     val id: Int,
     label: String,
     labels: Vector[String],
@@ -57,7 +58,7 @@ object Definition:
       tag: ClassTag[A]
   )(
       fields: Tuple.Map[mirror.MirroredElemTypes, Field]
-  ): Definition[A] = made(
+  ): Definition[A] = Definition(
     id,
     constValue[mirror.MirroredLabel],
     constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString).toVector,
@@ -65,15 +66,6 @@ object Definition:
     mirror.fromProduct,
     tag.runtimeClass
   )
-
-  def made[A <: Message](
-      id: Int,
-      label: String,
-      labels: Vector[String],
-      fields: Vector[Field[?]],
-      make: Product => A,
-      of: Class[?]
-  ): Definition[A] = new Definition(id, label, labels, fields, make, of)
 
   private def snake(name: String): String =
     name.zipWithIndex.map((c, at) =>

@@ -20,9 +20,10 @@ object Frame:
   private[mavlink] val Start         = 0xfd
   private[mavlink] val StartVersion1 = 0xfe
 
-  private[mavlink] val HeaderLength    = 10
-  private[mavlink] val ChecksumLength  = 2
-  private[mavlink] val SignatureLength = 13
+  private[mavlink] val HeaderLength         = 10
+  private[mavlink] val HeaderLengthVersion1 = 6
+  private[mavlink] val ChecksumLength       = 2
+  private[mavlink] val SignatureLength      = 13
 
   /** The only supported one of the flags that a receiver must understand: a signature follows. */
   private[mavlink] val Signed = 0x01

@@ -22,7 +22,9 @@ final case class ReaderCounts(
     notUnderstood: Long = 0,
     version1: Long = 0,
     garbageBytes: Long = 0
-)
+):
+  /** Frames that a peer which speaks MAVLink 2 did not mean. */
+  def damaged: Long = badChecksum + unknown + notUnderstood
 
 /** Decodes bytes to frames; after invalid input it resumes at the next frame. Holds one frame at most. Not
   * thread-safe.
@@ -72,46 +74,40 @@ final class FrameReader(signing: Option[Signing] = None):
     def byte(offset: Int) = all(at + offset) & 0xff
     val left              = all.length - at
     byte(0) match
-      case Start if left < HeaderLength => Step.Cut
-      case Start                        =>
-        val flags      = byte(2)
-        val frameEnd   = HeaderLength + byte(1) + ChecksumLength
-        val length     = frameEnd + (if (flags & Signed) != 0 then SignatureLength else 0)
-        val id         = byte(7) | byte(8) << 8 | byte(9) << 16
-        val definition = Dialect.of(id)
-        if (flags & ~Signed) != 0 then skip(1)(_.copy(notUnderstood = counted.notUnderstood + 1))
-        else if left < length then Step.Cut
-        else if definition.isEmpty then unknown(all, at, length, isWhole)
-        else
-          val frame = all.slice(at, at + frameEnd)
-          val sum = Checksum.Start.add(frame, 1, frameEnd - ChecksumLength).add(definition.get.crcExtra).value
-          if sum != (byte(frameEnd - 2) | byte(frameEnd - 1) << 8) then
-            skip(1)(_.copy(badChecksum = counted.badChecksum + 1))
-          else if !signing.forall(sign =>
-              length > frameEnd && sign.accepts(
-                frame,
-                all.slice(at + frameEnd, at + length),
-                byte(5),
-                byte(6)
-              )
-            )
-          then skip(length)(_.copy(badSignature = counted.badSignature + 1))
+      case Start if left >= HeaderLength && (byte(2) & ~Signed) != 0 =>
+        skip(1)(_.copy(notUnderstood = counted.notUnderstood + 1))
+      case Start if left >= HeaderLength =>
+        val frameEnd = HeaderLength + byte(1) + ChecksumLength
+        val length   = frameEnd + (if (byte(2) & Signed) != 0 then SignatureLength else 0)
+        val id       = byte(7) | byte(8) << 8 | byte(9) << 16
+        checked(all, at, frameEnd, length, id, isWhole): definition =>
+          val frame     = all.slice(at, at + frameEnd)
+          val signature = all.slice(at + frameEnd, at + length)
+          if !signing.forall(length > frameEnd && _.accepts(frame, signature, byte(5), byte(6))) then
+            skip(length)(_.copy(badSignature = counted.badSignature + 1))
           else
-            val message = definition.get.decode(frame.slice(HeaderLength, frameEnd - ChecksumLength))
+            val message = definition.decode(frame.slice(HeaderLength, frameEnd - ChecksumLength))
             note(byte(5), byte(6), byte(4))
             Step.Take(Frame(byte(5), byte(6), byte(4), message, signing.isDefined), length)
-      case StartVersion1 if left < 6 => Step.Cut
-      case StartVersion1             =>
-        val length     = 8 + byte(1)
-        val definition = Dialect.of(byte(5))
-        if left < length then Step.Cut
-        else if definition.isEmpty then unknown(all, at, length, isWhole)
-        else
-          val sum = Checksum.Start.add(all, at + 1, at + length - 2).add(definition.get.crcExtra).value
-          if sum == (byte(length - 2) | byte(length - 1) << 8) then
-            skip(length)(_.copy(version1 = counted.version1 + 1))
-          else skip(1)(_.copy(badChecksum = counted.badChecksum + 1))
-      case _ => skip(1)(_.copy(garbageBytes = counted.garbageBytes + 1))
+      case StartVersion1 if left >= HeaderLengthVersion1 =>
+        val length = HeaderLengthVersion1 + byte(1) + ChecksumLength
+        checked(all, at, length, length, byte(5), isWhole): _ =>
+          skip(length)(_.copy(version1 = counted.version1 + 1))
+      case Start | StartVersion1 => Step.Cut
+      case _                     => skip(1)(_.copy(garbageBytes = counted.garbageBytes + 1))
+
+  /** Verifies a frame's checksum, which ends at `frameEnd`; the frame begins at `at` and has `length` bytes.
+    */
+  private def checked(all: Array[Byte], at: Int, frameEnd: Int, length: Int, id: Int, isWhole: Boolean)(
+      valid: Definition[? <: Message] => Step
+  ): Step =
+    if all.length - at < length then Step.Cut
+    else
+      Dialect.of(id).fold(unknown(all, at, length, isWhole)): definition =>
+        val end  = at + frameEnd - ChecksumLength
+        val sum  = Checksum.Start.add(all, at + 1, end).add(definition.crcExtra).value
+        val told = all(end) & 0xff | (all(end + 1) & 0xff) << 8
+        if sum == told then valid(definition) else skip(1)(_.copy(badChecksum = counted.badChecksum + 1))
 
   /** Skips a frame whose checksum cannot be computed, if another follows it or the datagram ends; else only
     * its first byte, since the bytes may not be a frame.

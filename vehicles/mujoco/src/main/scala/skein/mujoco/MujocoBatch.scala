@@ -2,6 +2,7 @@ package skein.mujoco
 
 import java.lang.foreign.ValueLayout.{JAVA_BYTE, JAVA_DOUBLE, JAVA_INT}
 import java.lang.foreign.{Arena, MemorySegment}
+import skein.mujoco.MujocoLibrary.calls
 
 /** A batch of simulations of one model: MuJoCo's `mjBatch`, stepped by the calling thread. The state of one
   * simulation is a row of values. Its memory is freed once it is unreachable. Not thread-safe.
@@ -9,11 +10,13 @@ import java.lang.foreign.{Arena, MemorySegment}
 private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: Int, arena: Arena):
   import MujocoBatch.*
 
-  val row: Int = MujocoCalls.rowSize(batch)
+  val row: Int = calls.rowSize.invokeExact(batch)
 
-  private val rows = MujocoCalls.state(batch).reinterpret(count.toLong * row * 8, arena, null)
-  private val ids  = arena.allocate(JAVA_INT, count)
-  private var due  = 0
+  private val rows =
+    val state = calls.state.invokeExact(batch): MemorySegment
+    state.reinterpret(count.toLong * row * 8, arena, null)
+  private val ids = arena.allocate(JAVA_INT, count)
+  private var due = 0
 
   def apply(place: Int, index: Int): Double = rows.getAtIndex(JAVA_DOUBLE, place.toLong * row + index)
 
@@ -28,7 +31,7 @@ private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: In
   /** The offset and length of a part of the state in a row. */
   def part(component: Int): Part =
     val size  = arena.allocate(JAVA_INT)
-    val start = MujocoCalls.component(batch, component, size)
+    val start = calls.component.invokeExact(batch, component, size): MemorySegment
     Part(((start.address - rows.address) / 8).toInt, size.get(JAVA_INT, 0))
 
   def doubles(field: String): Array[Double] =
@@ -42,14 +45,16 @@ private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: In
   private def fieldOf[A: scala.reflect.ClassTag](name: String, bytes: Int)(read: (MemorySegment, Long) => A) =
     val size    = arena.allocate(JAVA_INT)
     val element = arena.allocate(JAVA_INT)
-    val at      = MujocoCalls.expand(batch, arena.allocateFrom(name), size, element)
+    val text    = arena.allocateFrom(name)
+    val at      = calls.expand.invokeExact(batch, text, size, element): MemorySegment
     require(at.address != 0, s"MuJoCo has no field $name")
     require(element.get(JAVA_INT, 0) == bytes, s"$name: expected $bytes bytes each")
     val length = size.get(JAVA_INT, 0)
     val whole  = at.reinterpret(length.toLong * bytes)
     Array.tabulate(length)(index => read(whole, index.toLong))
 
-  def reset(): Unit = check(MujocoCalls.reset(batch))
+  def reset(): Unit =
+    check(calls.reset.invokeExact(batch, MemorySegment.NULL, 0, MemorySegment.NULL, 0): Int)
 
   /** Marks a simulation to be stepped by the next [[step]]. */
   def mark(place: Int): Unit =
@@ -58,20 +63,21 @@ private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: In
 
   /** Steps the simulations marked since the last call. */
   def step(): Unit =
-    if due > 0 then check(MujocoCalls.step(batch, ids, due, 1))
+    if due > 0 then check(calls.step.invokeExact(batch, ids, due, 1, 0): Int)
     due = 0
 
   /** Steps all simulations `steps` times, each with its own control in each step (`mjSTATE_CTRL`, count ×
     * steps × its size).
     */
   def rollout(steps: Int, controls: MemorySegment): Unit =
-    check(MujocoCalls.rollout(batch, steps, controls, MujocoBatch.Controls))
+    val (all, none) = (MemorySegment.NULL, MemorySegment.NULL)
+    check(calls.rollout.invokeExact(batch, all, 0, steps, controls, Controls, none, 0): Int)
 
   private def check(failed: Int): Unit =
     if failed > 0 then
-      val reasons = (0 until count).map(place =>
-        MujocoCalls.error(batch, place).reinterpret(ErrorSize).getString(0)
-      )
+      val reasons = (0 until count).map: place =>
+        val text = calls.error.invokeExact(batch, place): MemorySegment
+        text.reinterpret(ErrorSize).getString(0)
       throw MujocoFailed(s"MuJoCo: ${reasons.find(_.nonEmpty).getOrElse("failed")}")
 
 /** Thrown when MuJoCo could not step a model. */
@@ -87,10 +93,11 @@ private[mujoco] object MujocoBatch:
     val config = arena.allocate(8, 4)
     config.set(JAVA_INT, 0, threads)
     val error = arena.allocate(ErrorSize)
-    val made  = MujocoCalls.makeBatch(model, count, config, error, ErrorSize.toInt)
+    val made  =
+      calls.makeBatch.invokeExact(model, count, config, error, ErrorSize.toInt): MemorySegment
     Either.cond(
       made.address != 0,
-      new MujocoBatch(NativeMemory.owned(made, arena)(MujocoCalls.deleteBatch(_)), count, arena),
+      new MujocoBatch(NativeMemory.owned(made, arena)(calls.deleteBatch.invokeExact(_): Unit), count, arena),
       error.getString(0).trim
     )
 

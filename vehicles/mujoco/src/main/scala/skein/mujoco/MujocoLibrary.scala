@@ -3,6 +3,7 @@ package skein.mujoco
 import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import scala.jdk.CollectionConverters.*
+import scala.util.control.NonFatal
 import scala.util.{Try, Using}
 
 /** Locates MuJoCo's C library: the path in the system property `skein.mujoco` or the environment variable
@@ -29,24 +30,24 @@ object MujocoLibrary:
           s"mujoco (pip install mujoco), or the library's path in $Named"
       )
 
-  /** The library, or why none of the required version is found. Searched once. */
-  lazy val find: Either[String, Path] = found.flatMap: path =>
-    loadable(path).flatMap: _ =>
-      val version = MujocoCalls.version()
-      Either.cond(
-        version >= LeastVersion,
-        path,
-        s"$path: expected MuJoCo ${LeastVersion / 1000000} or newer, got " +
-          s"${version / 1000000}.${version / 1000 % 1000}.${version % 1000}"
-      )
-
-  private def loadable(path: Path) =
-    LoadedLibrary.path = path
-    try Right(Class.forName("skein.mujoco.MujocoCalls", true, getClass.getClassLoader))
+  private lazy val loaded: Either[String, (path: Path, calls: MujocoCalls)] = found.flatMap: path =>
+    try Right((path, MujocoCalls(path)))
     catch
-      case error: LinkageError =>
-        val reason = Option(error.getCause).getOrElse(error)
-        Left(s"$path: expected MuJoCo's library of version 4 or newer: ${reason.getMessage}")
+      case NonFatal(error) =>
+        Left(s"$path: expected MuJoCo's library of version 4 or newer: ${error.getMessage}")
+
+  private[mujoco] lazy val calls: MujocoCalls =
+    loaded.fold(reason => throw IllegalStateException(reason), _.calls)
+
+  /** The library, or why none of the required version is found. Searched once. */
+  lazy val find: Either[String, Path] = loaded.flatMap: one =>
+    val version = one.calls.version.invokeExact(): Int
+    Either.cond(
+      version >= LeastVersion,
+      one.path,
+      s"${one.path}: expected MuJoCo ${LeastVersion / 1000000} or newer, got " +
+        s"${version / 1000000}.${version / 1000 % 1000}.${version % 1000}"
+    )
 
   /** The folder of the Python package `mujoco`. */
   private def fromPython: Option[Path] = Try {

@@ -2,6 +2,7 @@ package skein.mujoco
 
 import java.lang.foreign.{Arena, MemorySegment}
 import java.nio.file.{Files, Path}
+import skein.mujoco.MujocoLibrary.calls
 import skein.units.Expect
 
 /** A multirotor in MuJoCo's XML. Its body is that of the first joint, a free one; its z is up. The effects of
@@ -45,10 +46,11 @@ object MujocoModel:
   private[mujoco] def load(file: Path): Either[String, MemorySegment] =
     val arena = Arena.ofAuto()
     val error = arena.allocate(ErrorSize)
-    val model = MujocoCalls.load(arena.allocateFrom(file.toString), error, ErrorSize.toInt)
+    val text  = arena.allocateFrom(file.toString)
+    val model = calls.load.invokeExact(text, MemorySegment.NULL, error, ErrorSize.toInt): MemorySegment
     Either.cond(
       model.address != 0,
-      NativeMemory.owned(model, arena)(MujocoCalls.deleteModel(_)),
+      NativeMemory.owned(model, arena)(calls.deleteModel.invokeExact(_): Unit),
       s"$file: ${error.getString(0).trim}"
     )
 

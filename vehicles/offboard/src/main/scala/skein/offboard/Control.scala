@@ -100,10 +100,7 @@ final case class Control(
     */
   def read(token: Long, now: Instant): Step =
     if readers.size >= MostReaders then
-      Step(
-        this,
-        answers = Vector(token -> Left(VehicleError.Overloaded(s"$name: $MostReaders readings wait already")))
-      )
+      answered(token, Left(VehicleError.Overloaded(s"$name: $MostReaders readings wait already")))
     else Step(copy(readers = readers :+ ((token, now + settings.timeout))))
 
   def act(token: Long, action: Action, lasts: Span, now: Instant): Step = known(token): own =>
@@ -201,8 +198,9 @@ final case class Control(
 
   private def name = s"system $system"
 
-  private def refused(token: Long, why: String): Step =
-    Step(this, answers = Vector(token -> Left(VehicleError.Refused(why))))
+  private def answered(token: Long, answer: Answer): Step = Step(this, answers = Vector(token -> answer))
+
+  private def refused(token: Long, why: String): Step = answered(token, Left(VehicleError.Refused(why)))
 
   private def replacing(now: Instant): Control =
     copy(asked =
@@ -288,58 +286,47 @@ final case class Control(
       case Some(one) if result == 0 =>
         val entered = one.mode.getOrElse(mode)
         val armed   = if command == Command.Arm then one.numbers(0) == 1 else isArmed
-        Step(
-          copy(orders = orders.filter(_ ne one), mode = entered, isArmed = armed),
-          answers = Vector(one.token -> Right(true))
-        )
+        without(one).copy(mode = entered, isArmed = armed).answered(one.token, Right(true))
       case Some(_) if result == Result.InProgress => Step(this)
       // The vehicle may not have received setpoints yet.
       case Some(one) if isOffboard(one) && one.tries < MostTries => Step(this)
       case Some(one)                                             =>
-        Step(copy(orders =
-          orders.map(other => if other eq one then one.copy(refusal = Some((result, now))) else other)
-        ))
+        Step(changed(one, one.copy(refusal = Some((result, now)))))
 
   /** Adds the autopilot's status text to the refusal it explains. */
   private def explained(text: String): Step =
-    orders.find(_.refusal.isDefined).fold(Step(this))(one =>
-      copy(orders = orders.filter(_ ne one)).failed(one, text)
-    )
+    orders.find(_.refusal.isDefined).fold(Step(this))(one => without(one).failed(one, text))
+
+  private def without(one: Order): Control = copy(orders = orders.filter(_ ne one))
+
+  private def changed(one: Order, to: Order): Control =
+    copy(orders = orders.map(other => if other eq one then to else other))
 
   private def failed(one: Order, why: String): Step =
     val error = VehicleError.Refused(s"$name: $why")
-    if !isOffboard(one) then Step(this, answers = Vector(one.token -> Left(error)))
+    if !isOffboard(one) then answered(one.token, Left(error))
     else Step(copy(flown = None, asked = Vector.empty), answers = asked.map(_.token -> Left(error)))
 
   /** Sends due commands again, and ends those without tries left. */
   private def due(now: Instant): Step =
     orders.foldLeft(Step(this)): (before, one) =>
-      val next = before.next
       one.refusal match
         case Some((result, at)) if now >= at + TextWithin =>
-          before.andThen(_.copy(orders =
-            next.orders.filter(_ ne one)
-          ).failed(one, s"refused (result $result)"))
+          before.andThen(_.without(one).failed(one, s"refused (result $result)"))
+        case None if now >= one.until && isOffboard(one) =>
+          before.andThen(_.without(one).failed(one, "offboard was not entered in time"))
         case None if now >= one.until =>
-          val without = next.copy(orders = next.orders.filter(_ ne one))
-          if isOffboard(one) then
-            before.andThen(_ => without.failed(one, "offboard was not entered in time"))
-          else
-            before.andThen(_ =>
-              Step(
-                without,
-                answers = Vector(one.token -> Left(VehicleError.TimedOut(
-                  s"$name: no answer to command ${one.command} within ${inMs(settings.timeout)}"
-                )))
-              )
-            )
+          val why = s"$name: no answer to command ${one.command} within ${inMs(settings.timeout)}"
+          before.andThen(_.without(one).answered(one.token, Left(VehicleError.TimedOut(why))))
         case None if now >= one.sendAt =>
           val again = one.copy(tries = one.tries + 1, sendAt = now + settings.timeout / MostTries.toLong)
-          val kept  = next.orders.map(other => if other eq one then again else other)
-          before.andThen(_ => Step(next.copy(orders = kept), Vector(one.message(system))))
+          before.andThen(known => Step(known.changed(one, again), Vector(one.message(system))))
         case _ => before
 
 object Control:
+  /** The step of a request, by its token, at a time. */
+  type Request = (Control, Long, Instant) => Step
+
   type Answer = Either[VehicleError, Boolean | Stamped[Kinematics]]
 
   /** A new state, with messages to send.

@@ -10,6 +10,7 @@ import scala.collection.concurrent.TrieMap
 import scala.concurrent.{Future, Promise}
 import scala.util.Try
 import skein.mavlink.*
+import skein.mavlink.CommonDialect.Command
 import skein.port.VehicleError
 import skein.signal.ClockAlignment
 import skein.units.*
@@ -52,11 +53,7 @@ final class MavlinkLink private (
   def clocks: Option[ClockAlignment] = controls(systems.head).clock.map(_.alignment)
 
   /** Sends a request to one vehicle's control. */
-  private[offboard] def ask(number: Int)(what: (
-      Control,
-      Long,
-      Instant
-  ) => Control.Step): Future[Control.Answer] =
+  private[offboard] def ask(number: Int)(what: Control.Request): Future[Control.Answer] =
     val token   = tokens.getAndIncrement()
     val promise = Promise[Control.Answer]()
     waiting(token) = promise
@@ -93,10 +90,10 @@ final class MavlinkLink private (
   /** Requests the messages that control needs from a vehicle. */
   private def greet(number: Int): Unit = synchronized:
     def every(id: Int, micros: Float) =
-      CommandLong(number, 1, SetInterval, 0, id.toFloat, micros, 0, 0, 0, 0, 0)
+      CommandLong(number, 1, Command.SetMessageInterval, 0, id.toFloat, micros, 0, 0, 0, 0, 0)
     val sampled = Samples.map(every(_, (settings.sampleEvery.toNanos / 1000).toFloat))
     val muted   = Unneeded.map(every(_, -1))
-    send(sampled ++ muted :+ CommandLong(number, 1, RequestMessage, 0, 49, 0, 0, 0, 0, 0, 0))
+    send(sampled ++ muted :+ CommandLong(number, 1, Command.RequestMessage, 0, 49, 0, 0, 0, 0, 0, 0))
 
   /** Fixes the flight's frame and clock once all vehicles are known. */
   private def settle(): Unit = synchronized:
@@ -140,9 +137,6 @@ object MavlinkLink:
   private val GroundStation = 245
   private val Component     = 190
   private val Beat          = Span.ofSeconds(0.5)
-
-  private val SetInterval    = 511
-  private val RequestMessage = 512
 
   /** ODOMETRY, LOCAL_POSITION_NED, ATTITUDE_QUATERNION. */
   private val Samples = Vector(331, 32, 31)

@@ -44,7 +44,7 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
   /** The reason why the vehicle follows no setpoints; None if it follows them. */
   def taken: Option[String] = link.control(number).taken
 
-  private def done(what: (Control, Long, Instant) => Control.Step): Future[Either[VehicleError, Boolean]] =
+  private def done(what: Control.Request): Future[Either[VehicleError, Boolean]] =
     link
       .ask(number)(what)
       .map(_.map:

@@ -1,6 +1,7 @@
 package skein.offboard
 
 import skein.mavlink.*
+import skein.mavlink.CommonDialect.Frame.LocalNed
 import skein.signal.Kinematics
 import skein.units.*
 
@@ -51,5 +52,3 @@ final case class ReportedMotion(
 
 /** Messages do not overtake by so much: a vehicle's clock that is set back by more has begun anew. */
 private val Restart = Span.ofSeconds(1)
-
-private val LocalNed = 1

@@ -1,5 +1,6 @@
 package skein.offboard
 
+import skein.mavlink.CommonDialect.{Frame, Ignore}
 import skein.mavlink.{Message, SetAttitudeTarget, SetPositionTargetLocalNed}
 import skein.policy.{Action, Yaw}
 import skein.signal.Kinematics
@@ -17,11 +18,11 @@ private[offboard] object Setpoints:
     */
   def of(action: Action, state: Kinematics, originNed: Vector3, system: Int): Option[Message] = action match
     case Action.Velocity(v, yaw) =>
-      Some(local(system, Vector3.Zero, v, Position | Acceleration, turn(yaw, v)))
+      Some(local(system, Vector3.Zero, v, Ignore.Position | Acceleration, turn(yaw, v)))
     case Action.VelocityAt(north, east, down, yaw) =>
       val velocity = Vector3(north, east, 0)
       val at       = Vector3(0, 0, down.value - originNed.z)
-      Some(local(system, at, velocity, 1 | 2 | 32 | Acceleration, turn(yaw, velocity)))
+      Some(local(system, at, velocity, Ignore.X | Ignore.Y | Ignore.Vz | Acceleration, turn(yaw, velocity)))
     case along: Action.Along                => of(along.byVelocity, state, originNed, system)
     case Action.Position(place, speed, yaw) =>
       val goal = place - originNed
@@ -29,10 +30,10 @@ private[offboard] object Setpoints:
       // No setpoint states the speed towards a position: far from it, a velocity is sent instead.
       if way.norm > NearM then
         val velocity = GoTo.velocityNed(state.positionNed, state.velocityNed, goal, speed)
-        Some(local(system, Vector3.Zero, velocity, Position | Acceleration, turn(yaw, way)))
-      else Some(local(system, goal, Vector3.Zero, Velocity | Acceleration, turn(yaw, way)))
+        Some(local(system, Vector3.Zero, velocity, Ignore.Position | Acceleration, turn(yaw, way)))
+      else Some(local(system, goal, Vector3.Zero, Ignore.Velocity | Acceleration, turn(yaw, way)))
     case Action.Turn(yaw) =>
-      Some(local(system, Vector3.Zero, Vector3.Zero, Position | Acceleration, turn(yaw, Vector3.Zero)))
+      Some(local(system, Vector3.Zero, Vector3.Zero, Ignore.Position | Acceleration, turn(yaw, Vector3.Zero)))
     case Action.Attitude(roll, pitch, yaw, thrust) =>
       val q = Quaternion.of(roll.value, pitch.value, yaw.value)
       Some(
@@ -40,11 +41,7 @@ private[offboard] object Setpoints:
       )
     case Action.Hover | Action.Land => None
 
-  private val Position     = 1 | 2 | 4
-  private val Velocity     = 8 | 16 | 32
   private val Acceleration = 64 | 128 | 256
-  private val IgnoreYaw    = 1024
-  private val IgnoreRate   = 2048
   private val NearM        = 1.0
   private val ForwardMps   = 0.5
 
@@ -52,11 +49,11 @@ private[offboard] object Setpoints:
     * ignore its field.
     */
   private def turn(yaw: Yaw, travelNed: Vector3): (mask: Int, yaw: Double, rate: Double) = yaw match
-    case Yaw.Towards(heading) => (mask = IgnoreRate, yaw = heading.value, rate = 0.0)
-    case Yaw.Turning(rate)    => (mask = IgnoreYaw, yaw = 0.0, rate = rate)
+    case Yaw.Towards(heading) => (mask = Ignore.YawRate, yaw = heading.value, rate = 0.0)
+    case Yaw.Turning(rate)    => (mask = Ignore.Yaw, yaw = 0.0, rate = rate)
     case Yaw.Forward if StrictMath.hypot(travelNed.x, travelNed.y) > ForwardMps =>
-      (mask = IgnoreRate, yaw = StrictMath.atan2(travelNed.y, travelNed.x), rate = 0.0)
-    case Yaw.Still | Yaw.Forward => (mask = IgnoreYaw | IgnoreRate, yaw = 0.0, rate = 0.0)
+      (mask = Ignore.YawRate, yaw = StrictMath.atan2(travelNed.y, travelNed.x), rate = 0.0)
+    case Yaw.Still | Yaw.Forward => (mask = Ignore.Yaw | Ignore.YawRate, yaw = 0.0, rate = 0.0)
 
   private def local(
       system: Int,
@@ -68,7 +65,7 @@ private[offboard] object Setpoints:
     0,
     system,
     1,
-    LocalNed,
+    Frame.LocalNed,
     ignored | turn.mask,
     at.x.toFloat,
     at.y.toFloat,

@@ -5,10 +5,11 @@ import java.util.concurrent.{Executors, TimeUnit}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.{AirSimClient, Encoding, Eyes, Image, ImageKind, Multirotor, Scan, Shot}
-import skein.airsim.{SensorKind, SettingsSection, VehicleSettings, WorldSettings}
+import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.{Address, TcpTransport}
 import skein.ros.message.{Image as ImageMessage, *}
 import skein.rpc.{RpcClient, RpcError}
+import skein.simulator.SensorSettings
 import skein.units.{Clock as OwnClock, Expect, Instant, Radians, Span}
 
 /** Cameras and lidars of a simulator's vehicles as topics: `/NAME/CAMERA/image_raw` with
@@ -69,28 +70,14 @@ object SimulatedSensors:
   )
 
   private[ros] object Carried:
-    def of(world: WorldSettings): Vector[Carried] = SettingsSection
-      .read(world.text): root =>
-        val (vehicles, unless) = (root.section("Vehicles"), root.sections("DefaultSensors"))
-        world.vehicles.map: vehicle =>
-          val fields  = vehicles.section(vehicle.name)
-          val cameras = fields.sections("Cameras").map(_._1)
-          // As in the simulator, a vehicle's own lidars replace the default ones.
-          val own    = fields.sections("Sensors").filter((_, sensor) => isLidar(sensor))
-          val frames = (if own.isEmpty then unless else own).toMap.view.mapValues(_.text("DataFrame", ""))
-          Carried(
-            vehicle,
-            if cameras.isEmpty then Vector(Usual) else cameras,
-            lidars(vehicle)(name => frames.get(name).contains("SensorLocalFrame"))
-          )
-      .getOrElse(world.vehicles.map(each => Carried(each, Vector(Usual), lidars(each)(_ => false))))
-
-    private def isLidar(sensor: SettingsSection) =
-      sensor.number("SensorType", 0) == SensorKind.Lidar.number.toDouble
-
-    private def lidars(vehicle: VehicleSettings)(isLocal: String => Boolean) =
-      vehicle.sensors.collect { case (name, SensorKind.Lidar) => name }.toVector.sorted.map: name =>
-        (name = name, isLocal = isLocal(name))
+    def of(world: WorldSettings): Vector[Carried] =
+      val equipment = SensorSettings.of(world)
+      world.vehicles.map: vehicle =>
+        Carried(
+          vehicle,
+          equipment.cameras.get(vehicle.name).filter(_.nonEmpty).fold(Vector(Usual))(_.keys.toVector),
+          equipment.lidars.of(vehicle).map((name, lidar) => (name = name, isLocal = lidar.sensorFrame))
+        )
 
   /** Why the names of a vehicle's sensors cannot be those of topics and frames, if they cannot. */
   private[ros] def mistake(carried: Carried): Option[String] =

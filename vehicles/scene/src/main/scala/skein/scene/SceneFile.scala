@@ -86,19 +86,14 @@ object SceneFile:
         only(entry, Common :+ "box"*)
         val lengths = numbers(entry, "box", 3)
         if lengths.exists(_ <= 0) then fail(entry.getValue("box"), "box: expected three lengths above 0, m")
-        standing(
-          entry,
-          "Box",
-          index,
-          Shape.Box(Vector3(lengths(0), lengths(1), lengths(2)) * 0.5),
-          lengths(2) / 2
-        )
+        val shape = Shape.Box(Vector3(lengths(0), lengths(1), lengths(2)) * 0.5)
+        made(entry, "Box", index, shape, place(entry, lengths(2) / 2), 0x9a8f80)
       case Seq("pole") =>
         only(entry, Common ++ Seq("pole")*)
         val Seq(radius, height) = numbers(entry, "pole", 2): @unchecked
         if radius <= 0 || height <= 0 then
           fail(entry.getValue("pole"), "pole: expected radius and height above 0, m")
-        standing(entry, "Pole", index, Shape.Pole(radius, height / 2), height / 2)
+        made(entry, "Pole", index, Shape.Pole(radius, height / 2), place(entry, height / 2), 0x6b4f3a)
       case Seq("wall") =>
         only(entry, "name", "id", "colour", "wall", "height-m", "thickness-m")
         val Seq(n0, e0, n1, e1) = numbers(entry, "wall", 4): @unchecked
@@ -127,10 +122,6 @@ object SceneFile:
           s"expected one of box, pole, wall or tag, got ${if came.isEmpty then "nothing" else came}"
         )
 
-  /** An object on the ground, unless `at` has a third number. */
-  private def standing(entry: Config, kind: String, index: Int, shape: Shape, halfM: Double): SceneObject =
-    made(entry, kind, index, shape, place(entry, halfM), if kind == "Pole" then 0x6b4f3a else 0x9a8f80)
-
   private def made(
       entry: Config,
       kind: String,
@@ -144,6 +135,7 @@ object SceneFile:
     val id = Option.when(entry.hasPath("id"))(number(entry, "id", None, 0, 255).toInt)
     SceneObject(name, shape, place, colour(entry, "colour", unless), id)
 
+  /** The place of an object of this half height: on the ground, unless `at` has a third number. */
   private def place(entry: Config, halfM: Double): Placement =
     val at   = numbers(entry, "at", 3, least = 2)
     val down = if at.size == 3 then at(2) else 0.0

@@ -35,10 +35,7 @@ private[simulator] final class Beside(
 
   private def work(): Unit =
     try
-      var one = next()
-      while one.nonEmpty do
-        one.foreach(_())
-        one = next()
+      Iterator.continually(next()).takeWhile(_.nonEmpty).flatten.foreach(_())
     finally
       running.decrementAndGet(): Unit
       // Work may have been added since the last check.

@@ -1,6 +1,6 @@
 package skein.simulator
 
-import skein.airsim.wire.{CameraInfo, Pose, ProjectionMatrix, Quaternionr, Vector3r}
+import skein.airsim.wire.{CameraInfo, Pose, ProjectionMatrix}
 import skein.units.{Quaternion, Vector3}
 
 /** A vehicle's camera: its mount, lens and film.
@@ -44,10 +44,7 @@ final private[simulator] case class Camera(
 
   /** AirSim's camera information for a vehicle at this position. */
   def info(vehicle: Vector3, attitude: Quaternion): CameraInfo = CameraInfo(
-    Pose(
-      Vector3r(vehicle + attitude.toWorld(position)),
-      Quaternionr(attitude * orientation)
-    ),
+    Pose(vehicle + attitude.toWorld(position), attitude * orientation),
     fovDeg,
     ProjectionMatrix(projection)
   )

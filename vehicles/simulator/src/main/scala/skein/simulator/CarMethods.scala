@@ -3,28 +3,23 @@ package skein.simulator
 import skein.airsim.wire.{CarControls, CarState}
 
 /** Functions of cars that AirSim's `CarClient` has in addition to the functions of all vehicles. */
-private[simulator] object CarMethods:
+private[simulator] object CarMethods extends MethodList:
   import ServerMethod.*
 
-  val all: Seq[ServerMethod] = Seq(
-    many[(CarControls, String)]("setCarControls"):
-      case (simulation, (controls, name)) =>
-        car(simulation, name)((_, car) => done(car.setControls(controls)))
-    ,
-    one[String]("getCarControls")((simulation, name) =>
-      car(simulation, name)((_, car) => answer(car.controls))
-    ),
-    one[String]("getCarState"): (simulation, name) =>
-      car(simulation, name): (_, car) =>
-        val seen = VehicleMethods.sensed(simulation, car)
-        answer(CarState(
-          car.speedMps.toFloat,
-          car.gear,
-          car.rpm.toFloat,
-          SimulatedCar.MostRpm.toFloat,
-          car.controls.handbrake,
-          VehicleMethods.kinematics(seen),
-          seen.at,
-          seen.isMissing
-        ))
-  )
+  many[(CarControls, String)]("setCarControls"):
+    case (simulation, (controls, name)) =>
+      car(simulation, name)((_, car) => done(car.setControls(controls)))
+  read("getCarControls", car)((car, _) => car.controls)
+  one[String]("getCarState"): (simulation, name) =>
+    car(simulation, name): (_, car) =>
+      val seen = VehicleMethods.sensed(simulation, car)
+      answer(CarState(
+        car.speedMps.toFloat,
+        car.gear,
+        car.rpm.toFloat,
+        SimulatedCar.MostRpm.toFloat,
+        car.controls.handbrake,
+        VehicleMethods.kinematics(seen),
+        seen.at,
+        seen.isMissing
+      ))

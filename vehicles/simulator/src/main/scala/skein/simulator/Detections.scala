@@ -3,7 +3,7 @@ package skein.simulator
 import skein.airsim.wire.*
 import skein.scene.render.{Extent, Renderer}
 import skein.scene.Placement
-import skein.units.Vector3
+import skein.units.Quaternion
 
 /** A camera's detections: the filtered objects of which at least one pixel is visible. */
 private[simulator] object Detections:
@@ -41,7 +41,5 @@ private[simulator] object Detections:
   )
 
   private def relative(thing: Placement, camera: Placement): Pose =
-    val q       = camera.orientation
-    val inverse = Placement(Vector3.Zero, q.copy(x = -q.x, y = -q.y, z = -q.z))
-    val turned  = inverse.outside(Placement(Vector3.Zero, thing.orientation))
-    Pose(Vector3r(camera.inside(thing.position)), Quaternionr(turned.orientation))
+    val q = camera.orientation
+    Pose(camera.inside(thing.position), Quaternion(q.w, -q.x, -q.y, -q.z) * thing.orientation)

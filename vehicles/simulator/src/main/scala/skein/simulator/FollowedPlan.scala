@@ -15,7 +15,7 @@ private[simulator] final class FollowedPlan:
   /** Time of the next turn; None if there is none before a new plan arrives. */
   def dueAt: Option[Instant] = due
 
-  def receive(sequence: Long, plan: Vector[(at: Instant, action: Move.Order)], now: Instant): Unit =
+  def receive(sequence: Long, plan: Move.Plan, now: Instant): Unit =
     buffer = buffer.received(sequence, plan, now)
     if due.forall(_ > now) then due = buffer.due(now).map(_ => now).orElse(buffer.nextAfter(now))
 
@@ -29,17 +29,10 @@ private[simulator] final class FollowedPlan:
   def turn(vehicle: SimulatedMultirotor, now: Instant): Unit =
     for next <- buffer.due(now) if !running.exists(_.order eq next.action) do
       running = Some(FollowedPlan.Running(next.action, next.action(vehicle).toOption, next.at))
-    val goesOn = running.flatMap(_.move).map(_.turn(vehicle, now.since(running.fold(now)(_.startedAt))))
-    val again  = goesOn match
-      case Some(MoveProgress.Going(goal)) =>
-        vehicle.command(goal, now)
-        Some(now + PathFollowing.Period)
-      case Some(MoveProgress.Idle)           => Some(now + PathFollowing.Period)
-      case Some(MoveProgress.Ended(_, goal)) =>
-        goal.foreach(vehicle.command(_, now))
-        running = running.map(_.copy(move = None))
-        None
-      case None => None
+    val ended = running.flatMap(_.move).map: move =>
+      move.turn(vehicle, now.since(running.fold(now)(_.startedAt))).performed(vehicle, now).isDefined
+    if ended.contains(true) then running = running.map(_.copy(move = None))
+    val again = Option.when(ended.contains(false))(now + PathFollowing.Period)
     due = (again ++ buffer.nextAfter(now)).minOption
 
 private object FollowedPlan:

@@ -6,20 +6,18 @@ import skein.vehicle.{AxisGains, CascadeGains, Pid}
   * axes, then the integral ones, then the derivative ones. All controllers then restart, as in AirSim. Gains
   * outlive a reset.
   */
-private[simulator] object GainMethods:
+private[simulator] object GainMethods extends MethodList:
   import ServerMethod.*
 
-  val all: Seq[ServerMethod] = Seq(
-    gains("setAngleRateControllerGains")((set, axes) => set.copy(rate = axes)),
-    gains("setAngleLevelControllerGains")((set, axes) => set.copy(angle = axes)),
-    gains("setVelocityControllerGains")((set, axes) => set.copy(velocity = axes)),
-    gains("setPositionControllerGains")((set, axes) => set.copy(position = axes))
-  )
+  gains("setAngleRateControllerGains")((set, axes) => set.copy(rate = axes))
+  gains("setAngleLevelControllerGains")((set, axes) => set.copy(angle = axes))
+  gains("setVelocityControllerGains")((set, axes) => set.copy(velocity = axes))
+  gains("setPositionControllerGains")((set, axes) => set.copy(position = axes))
 
   /** Greatest gain accepted; AirSim's own are up to 2.5. */
   private val Largest = 1000f
 
-  private def gains(method: String)(change: (CascadeGains, AxisGains) => CascadeGains): ServerMethod =
+  private def gains(method: String)(change: (CascadeGains, AxisGains) => CascadeGains): Unit =
     many[(Seq[Float], Seq[Float], Seq[Float], String)](method):
       case (simulation, (p, i, d, name)) =>
         multirotor(simulation, name): (_, vehicle) =>

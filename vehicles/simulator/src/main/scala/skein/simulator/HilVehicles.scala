@@ -2,7 +2,7 @@ package skein.simulator
 
 import scala.collection.mutable
 import skein.hil.{AutopilotInterface, SensorTruth, Sensors}
-import skein.signal.{Kinematics, SplitMix64}
+import skein.signal.SplitMix64
 import skein.units.*
 
 /** The vehicles of a simulation with external autopilots: each autopilot's channel belongs to one vehicle.
@@ -17,7 +17,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
   private val world     = simulation.world
   private val startedAt = world.now
   private val flown     = mutable.LinkedHashMap.empty[Long, Flown]
-  private val out       = mutable.ArrayBuffer.empty[(channel: Long, datagrams: Vector[Array[Byte]])]
+  private val out       = mutable.Queue.empty[(channel: Long, datagrams: Vector[Array[Byte]])]
 
   private var damagedBefore = 0L
   private var lost          = 0L
@@ -50,9 +50,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
     one.vehicle.flyBy(Some(one.interface.rotors))
 
   def take(): Vector[(channel: Long, datagrams: Vector[Array[Byte]])] =
-    val all = out.toVector
-    out.clear()
-    all
+    out.dequeueAll(_ => true).toVector
 
   def nextDue: Option[Instant] =
     if isWaiting then None else stop(world.now)
@@ -99,12 +97,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
     SensorTruth(
       now,
       up,
-      Kinematics(
-        vehicle.positionAt(now),
-        vehicle.velocityAt(now),
-        state.orientation,
-        state.angularVelocityFrd
-      ),
+      vehicle.truth(now).motion,
       // Physics does not move a vehicle that stands on the ground.
       if state.grounded then Vector3.Zero else state.accelerationNed,
       place,

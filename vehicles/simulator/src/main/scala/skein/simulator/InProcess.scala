@@ -56,13 +56,6 @@ private[simulator] final class InProcess(
       vehicle.home.locate(seen.motion.positionNed)
     ))
 
-  private def kinematicsOf(vehicle: SimulatedVehicle, at: Instant) = Kinematics(
-    vehicle.worldPosition(at),
-    vehicle.velocityAt(at),
-    vehicle.orientation,
-    vehicle.angularVelocityFrd
-  )
-
   private final class OnBoard(val index: Int) extends Pilot:
     private var ordered = Option.empty[(action: Kinematics => Action, until: Option[Instant])]
 
@@ -82,7 +75,7 @@ private[simulator] final class InProcess(
 
     private def setpoint(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint] =
       ordered.map: (action, _) =>
-        val now    = kinematicsOf(vehicle, at)
+        val now    = vehicle.worldMotion(at)
         val chosen = if vehicle.isGrounded then lifting(action(now)) else action(now)
         ActionGuidance.of(own(chosen, vehicle.settings.startNed)).setpoint(
           now.copy(positionNed = vehicle.positionAt(at))

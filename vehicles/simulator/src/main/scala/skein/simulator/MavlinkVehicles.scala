@@ -80,11 +80,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
         VehicleMotion(world.now.since(startedAt), seen.motion, vehicle.flying)
 
     private def motionAt(at: Instant): VehicleMotion =
-      val state = vehicle.state.kinematics.copy(
-        positionNed = vehicle.positionAt(at),
-        velocityNed = vehicle.velocityAt(at)
-      )
-      VehicleMotion(at.since(startedAt), state, vehicle.flying)
+      VehicleMotion(at.since(startedAt), vehicle.truth(at).motion, vehicle.flying)
 
     def turn(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint] =
       val wasArmed          = decided.isArmed

@@ -26,11 +26,23 @@ private[simulator] enum MoveProgress:
   /** The move has ended and its call answers `result`; a `goal` holds for another 60 ms. */
   case Ended(result: Boolean, goal: Option[Setpoint])
 
+  /** Commands the goal, if there is one; returns the result of a move that has ended. */
+  def performed(vehicle: SimulatedMultirotor, at: Instant): Option[Boolean] = this match
+    case Going(goal) =>
+      vehicle.command(goal, at)
+      None
+    case Idle                => None
+    case Ended(result, goal) =>
+      goal.foreach(vehicle.command(_, at))
+      Some(result)
+
 private[simulator] object Move:
   /** A requested move, which is made from the vehicle's state when its turn comes. `Left` is the text of the
     * exception that AirSim throws.
     */
   type Order = SimulatedMultirotor => Either[String, Move]
+
+  type Plan = Vector[(at: Instant, action: Order)]
 
   /** Keeps one goal for a duration. A duration of zero ends immediately with `ifNone`. */
   def hold(seconds: Float, ifNone: Boolean = true)(goal: SimulatedMultirotor => Setpoint): Order = vehicle =>

@@ -1,5 +1,6 @@
 package skein.simulator
 
+import skein.airsim.wire.{CollisionInfo, Vector3r}
 import skein.scene.{Contact, Placement, Scene}
 import skein.units.{Instant, Quaternion, Vector3}
 
@@ -26,15 +27,17 @@ final private[simulator] class Obstacles(startNed: Vector3):
       freeM = Contact.clearanceM(scene, centre, half.norm)
       if freeM <= 0 then Contact.of(scene, Placement(centre, orientation), half) else None
 
-  /** Converts a contact to the touch that clients receive.
+  /** Converts a contact to what clients receive.
     *
     * @param positionNed the vehicle's position, in its own frame
     */
-  def told(scene: Scene, contact: Contact, at: Instant, positionNed: Vector3): Touch = Touch(
+  def told(scene: Scene, contact: Contact, at: Instant, positionNed: Vector3): CollisionInfo = CollisionInfo(
+    true,
+    contact.depthM.toFloat,
     at,
-    positionNed,
-    contact.normal,
-    contact.depthM,
-    contact.point - startNed,
-    scene.objects(contact.item - 1).name
+    Vector3r(contact.normal),
+    Vector3r(contact.point - startNed),
+    Vector3r(positionNed),
+    scene.objects(contact.item - 1).name,
+    -1
   )

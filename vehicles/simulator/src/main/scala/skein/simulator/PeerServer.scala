@@ -145,7 +145,7 @@ private[simulator] object PeerServer:
       if isAdmitted(channel, Seq(presentHere, present)) then
         val (queue, out) = Source.queue[ByteString](Waiting).preMaterialize()
         val joined       = JoinedPeer(channel, port.systems, isDatagrams, queue)
-        val guest        = Guest(KillSwitches.shared(s"peer-$channel"), port.speaks, peers, joined)
+        val guest        = Guest(KillSwitches.shared(s"peer-$channel"), port.speaks, peers, joined, isKnown)
         val places       = Seq(presentHere, present)
         places.foreach(_.entered(channel, guest))
         if isKnown then guest.join()
@@ -240,21 +240,19 @@ private[simulator] object PeerServer:
       val switch: SharedKillSwitch,
       speaks: Array[Byte] => Boolean,
       peers: Peers,
-      joined: JoinedPeer
+      joined: JoinedPeer,
+      isKnown: Boolean
   ) extends Places.Guest:
     @volatile private var spoken  = false
-    @volatile private var isTold  = false
     @volatile private var heardNs = System.nanoTime()
     private var before            = ByteString.empty
 
     def hasSpoken: Boolean = spoken
-    def silentFor: Span    = if isTold then Span.Zero else Span.ofNanos(System.nanoTime() - heardNs)
+    def silentFor: Span    = if isKnown then Span.Zero else Span.ofNanos(System.nanoTime() - heardNs)
     def leave(): Unit      = switch.shutdown()
 
-    /** Makes the guest a peer although it has sent no message. */
     def join(): Unit =
       spoken = true
-      isTold = true
       peers.joined(joined)
 
     def heard(bytes: ByteString): Future[Done] =
@@ -263,8 +261,7 @@ private[simulator] object PeerServer:
       else
         before = before ++ bytes
         if speaks(before.toArrayUnsafe()) then
-          spoken = true
-          peers.joined(joined)
+          join()
           told(before)
         else if before.length < MostBefore then Future.successful(Done)
         else

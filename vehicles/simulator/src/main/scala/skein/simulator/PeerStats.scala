@@ -23,11 +23,7 @@ final case class PeerStats(
 )
 
 private[simulator] final class PeerCounters:
-  val damaged: AtomicLong    = AtomicLong()
-  val dropped: AtomicLong    = AtomicLong()
-  val turnedAway: AtomicLong = AtomicLong()
-  val unanswered: AtomicLong = AtomicLong()
-  val foreign: AtomicLong    = AtomicLong()
+  val damaged, dropped, turnedAway, unanswered, foreign = AtomicLong()
 
   def stats: PeerStats =
     PeerStats(damaged.get, dropped.get, turnedAway.get, unanswered = unanswered.get, foreign = foreign.get)

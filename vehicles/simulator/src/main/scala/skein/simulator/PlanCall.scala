@@ -1,6 +1,7 @@
 package skein.simulator
 
 import skein.port.CommandPlan
+import skein.rpc.Rpclib
 import skein.units.*
 import upack.{Arr, Float32, Msg, Str}
 

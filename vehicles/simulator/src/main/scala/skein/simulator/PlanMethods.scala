@@ -1,6 +1,6 @@
 package skein.simulator
 
-import skein.units.{Expect, Instant}
+import skein.units.Expect
 import upack.Str
 
 /** The function that gives a vehicle a plan: moves for several times in one call. AirSim has no such
@@ -9,24 +9,20 @@ import upack.Str
   * effect. A move, a reset or `skeinHoverAt` restarts the numbering. `hover` does not, so that a late plan
   * does not undo it.
   */
-private[simulator] object PlanMethods:
+private[simulator] object PlanMethods extends MethodList:
   import ServerMethod.*
 
-  val all: Seq[ServerMethod] = Seq(
-    many[(Argument.Unsigned32, Seq[PlannedMove], String)](PlanCall.Function):
-      case (simulation, (sequence, moves, name)) =>
-        val call = PlanCall(sequence, moves.toVector, name)
-        multirotor(simulation, name): (index, _) =>
-          call.mistake.toLeft(orders(simulation, call)).flatten match
-            case Left(mistake)  => CallOutcome.Threw(mistake)
-            case Right(planned) =>
-              if planned.nonEmpty then simulation.follow(index, sequence, planned)
-              answer(true)
-  )
+  many[(Argument.Unsigned32, Seq[PlannedMove], String)](PlanCall.Function):
+    case (simulation, (sequence, moves, name)) =>
+      val call = PlanCall(sequence, moves.toVector, name)
+      multirotor(simulation, name): (index, _) =>
+        call.mistake.toLeft(orders(simulation, call)).flatten match
+          case Left(mistake)  => CallOutcome.Threw(mistake)
+          case Right(planned) =>
+            if planned.nonEmpty then simulation.follow(index, sequence, planned)
+            answer(true)
 
-  private type Planned = Vector[(at: Instant, action: Move.Order)]
-
-  private def orders(simulation: Simulated, call: PlanCall): Either[String, Planned] =
+  private def orders(simulation: Simulated, call: PlanCall): Either[String, Move.Plan] =
     Expect.each(call.moves)(move =>
       order(simulation, move, call.vehicle).map(flies => (at = move.at, action = flies))
     )

@@ -1,8 +1,8 @@
 package skein.simulator
 
 import scala.collection.mutable
-import skein.airsim.wire.{LidarData, Pose, Quaternionr, Vector3r}
-import skein.scene.{Bodies, Lidar, Moment, Placement, Scene}
+import skein.airsim.wire.{LidarData, Pose}
+import skein.scene.Lidar
 import skein.units.*
 
 /** The vehicles' lidars. Each takes one scan per revolution of the lidar, on the simulator's clock, with all
@@ -38,33 +38,14 @@ private[simulator] object Scans:
   final case class Carried(vehicle: Int, name: String, lidar: Lidar):
     val period: Span = Span.ofNanos(1_000_000_000L / lidar.rotationsPerSecond)
 
-/** A scan that has been taken: everything from which its points are computed, once.
+/** A scan that has been taken.
   *
-  * @param noise selects the noise, which differs between vehicles, lidars and scans
-  * @param origin origin of the vehicle's own frame in the world
+  * @param pose the lidar's pose, in the frame of its vehicle's start
+  * @param cast computes the points, on first use
   */
-final private[simulator] class Scan(
-    val at: Instant,
-    val count: Long,
-    noise: Long,
-    lidar: Lidar,
-    vehicle: Int,
-    place: Placement,
-    origin: Vector3,
-    scene: Scene,
-    vehicles: Bodies
-):
-  private lazy val points: Lidar.Points =
-    val moment = Moment(scene, vehicles)
-    lidar.scan(moment, place, moment.itemOf(vehicle), origin, noise)
+final private[simulator] class Scan(val at: Instant, val count: Long, pose: Pose, cast: () => Lidar.Points):
+  private lazy val points = cast()
 
   /** @param idOf the items' segmentation ids
     */
-  def data(idOf: Int => Int): LidarData =
-    val sensor = place.outside(lidar.place)
-    LidarData(
-      at,
-      points.xyz,
-      Pose(Vector3r(sensor.position - origin), Quaternionr(sensor.orientation)),
-      points.items.map(idOf)
-    )
+  def data(idOf: Int => Int): LidarData = LidarData(at, points.xyz, pose, points.items.map(idOf))

@@ -7,73 +7,59 @@ import skein.units.*
 
 /** Functions of the scene's content: the ground, objects and vehicles. There are no assets, levels or meshes.
   */
-private[simulator] object SceneMethods:
+private[simulator] object SceneMethods extends MethodList:
   import ServerMethod.*
   import VehicleLimits.{FarthestM, LongestName, MostVehicles}
 
-  val all: Seq[ServerMethod] = Seq(
-    many[(String, String, Pose, String)]("simAddVehicle"):
-      case (simulation, (name, kind, pose, _)) => addVehicle(simulation, name, kind, pose)
-    ,
-    many[(KinematicsState, Boolean, String)]("simSetKinematics"):
-      case (simulation, (state, _, name)) => setKinematics(simulation, state, name)
-    ,
-    one[String]("simListSceneObjects"): (simulation, regex) =>
-      val pattern = NamePattern(regex)
-      answer(simulation.objects.names.filter(pattern.matches))
-    ,
-    one[String]("simGetObjectPose")((simulation, name) => answer(simulation.objects.poseOf(name))),
-    many[(String, Option[Pose], Boolean)]("simSetObjectPose"):
-      case (simulation, (name, pose, _)) =>
-        // A missing object is reported for any pose: `simGetObjectPose` returns NaN for it.
-        if simulation.objects.vehicle(name).isEmpty && simulation.objects.thing(name).isEmpty then
-          answer(false)
-        else pose.fold(throw NotFinite())(there => within(there.position)(moveTo(simulation, name, there)))
-    ,
-    one[String]("simGetObjectScale")((simulation, name) =>
-      answer(Vector3r(simulation.objects.scale(name).getOrElse(Vector3.Zero)))
-    ),
-    many[(String, Vector3r)]("simSetObjectScale"):
-      case (simulation, (name, scale)) => answer(simulation.objects.setScale(name, scale.toVector))
-    ,
-    many[(String, String, Pose, Vector3r, Boolean, Boolean)]("simSpawnObject"):
-      case (_, (_, asset, _, _, _, _)) =>
-        CallOutcome.Threw(s"There were no objects with name $asset found in the Registry")
-    ,
-    one[String]("simDestroyObject")((_, _) => answer(false)),
-    none("simListAssets")(_ => answer(Seq.empty[String])),
-    one[String]("simLoadLevel")((_, _) => answer(false)),
-    none("simGetMeshPositionVertexBuffers")(_ => answer(Seq.empty[Int])),
-    many[(String, Int, Boolean)]("simSetSegmentationObjectID"):
-      case (simulation, (name, id, isRegex)) =>
-        val which: String => Boolean =
-          if isRegex then NamePattern(name, ignoreCase = true).matches else _ == name
-        answer(simulation.objects.setId(which, id))
-    ,
-    one[String]("simGetSegmentationObjectID")((simulation, name) =>
-      answer(simulation.objects.id(name).getOrElse(-1))
-    ),
-    many[(GeoPoint, String)]("simTestLineOfSightToPoint"):
-      case (simulation, (point, name)) =>
-        simulated(simulation, name): (index, vehicle) =>
-          val from  = vehicle.worldPosition(simulation.world.now)
-          val boxes = simulation.objects.boxes
-          answer(boxes.sees(from, place(simulation, point), except = boxes.itemOf(index)))
-    ,
-    many[(GeoPoint, GeoPoint)]("simTestLineOfSightBetweenPoints"):
-      case (simulation, (from, to)) =>
-        answer(simulation.objects.boxes.sees(place(simulation, from), place(simulation, to)))
-    ,
-    none("simGetWorldExtents"): simulation =>
-      def corner(sign: Int, down: Double) =
-        val there =
-          simulation.settings.world.origin.locate(Vector3(sign * ExtentM, sign * ExtentM, down))
-        GeoPoint(there.latitudeDeg, there.longitudeDeg, there.altitude.value.toFloat)
-      answer(Seq(corner(-1, 0), corner(1, -ExtentM)))
-    ,
-    // Clients have no files written.
-    many[(Vector3r, Int, Int, Int, Float, String)]("simCreateVoxelGrid")((_, _) => answer(false))
+  many[(String, String, Pose, String)]("simAddVehicle"):
+    case (simulation, (name, kind, pose, _)) => addVehicle(simulation, name, kind, pose)
+  many[(KinematicsState, Boolean, String)]("simSetKinematics"):
+    case (simulation, (state, _, name)) => setKinematics(simulation, state, name)
+  one[String]("simListSceneObjects"): (simulation, regex) =>
+    val pattern = NamePattern(regex)
+    answer(simulation.objects.names.filter(pattern.matches))
+  one[String]("simGetObjectPose")((simulation, name) => answer(simulation.objects.poseOf(name)))
+  many[(String, Option[Pose], Boolean)]("simSetObjectPose"):
+    case (simulation, (name, pose, _)) =>
+      // A missing object is reported for any pose: `simGetObjectPose` returns NaN for it.
+      if simulation.objects.vehicle(name).isEmpty && simulation.objects.thing(name).isEmpty then
+        answer(false)
+      else pose.fold(throw NotFinite())(there => within(there.position)(moveTo(simulation, name, there)))
+  one[String]("simGetObjectScale")((simulation, name) =>
+    answer(Vector3r(simulation.objects.scale(name).getOrElse(Vector3.Zero)))
   )
+  many[(String, Vector3r)]("simSetObjectScale"):
+    case (simulation, (name, scale)) => answer(simulation.objects.setScale(name, scale.toVector))
+  many[(String, String, Pose, Vector3r, Boolean, Boolean)]("simSpawnObject"):
+    case (_, (_, asset, _, _, _, _)) =>
+      CallOutcome.Threw(s"There were no objects with name $asset found in the Registry")
+  one[String]("simDestroyObject")((_, _) => answer(false))
+  none("simListAssets")(_ => answer(Seq.empty[String]))
+  one[String]("simLoadLevel")((_, _) => answer(false))
+  none("simGetMeshPositionVertexBuffers")(_ => answer(Seq.empty[Int]))
+  many[(String, Int, Boolean)]("simSetSegmentationObjectID"):
+    case (simulation, (name, id, isRegex)) =>
+      val which: String => Boolean =
+        if isRegex then NamePattern(name, ignoreCase = true).matches else _ == name
+      answer(simulation.objects.setId(which, id))
+  one[String]("simGetSegmentationObjectID")((simulation, name) =>
+    answer(simulation.objects.id(name).getOrElse(-1))
+  )
+  many[(GeoPoint, String)]("simTestLineOfSightToPoint"):
+    case (simulation, (point, name)) =>
+      simulated(simulation, name): (index, vehicle) =>
+        val from  = vehicle.worldPosition(simulation.world.now)
+        val boxes = simulation.objects.boxes
+        answer(boxes.sees(from, place(simulation, point), except = boxes.itemOf(index)))
+  many[(GeoPoint, GeoPoint)]("simTestLineOfSightBetweenPoints"):
+    case (simulation, (from, to)) =>
+      answer(simulation.objects.boxes.sees(place(simulation, from), place(simulation, to)))
+  none("simGetWorldExtents"): simulation =>
+    def corner(sign: Int, down: Double) =
+      GeoPoint(simulation.settings.world.origin.locate(Vector3(sign * ExtentM, sign * ExtentM, down)))
+    answer(Seq(corner(-1, 0), corner(1, -ExtentM)))
+  // Clients have no files written.
+  many[(Vector3r, Int, Int, Int, Float, String)]("simCreateVoxelGrid")((_, _) => answer(false))
 
   /** The world's extent as reported to clients, from the origin and upwards, m; the world has no edge. */
   private val ExtentM = 10_000.0
@@ -90,8 +76,7 @@ private[simulator] object SceneMethods:
       val added   = VehicleSettings(name, start, vehicleType = kind, sensors = sensors)
       val known   = VehicleLimits.flies(added) && !simulation.objects.exists(name)
       if known then
-        val q   = pose.orientation.toQuaternion.normalized
-        val yaw = StrictMath.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+        val yaw = pose.orientation.toQuaternion.normalized.yawRad
         simulation.addVehicle(added.copy(yaw = Radians(yaw)))
       answer(known)
 
@@ -122,5 +107,4 @@ private[simulator] object SceneMethods:
       state.angular_acceleration.toVector.norm <= 1e6
 
   private def place(simulation: Simulated, point: GeoPoint): Vector3 =
-    GeoLocation(point.latitude, point.longitude, Metres(point.altitude))
-      .nedFrom(simulation.settings.world.origin)
+    point.toLocation.nedFrom(simulation.settings.world.origin)

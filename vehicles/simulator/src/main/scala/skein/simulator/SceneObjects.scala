@@ -81,10 +81,10 @@ final private[simulator] class SceneObjects(world: World):
       thing(name).map(world.scene.objects).map(pose).orElse(vehicle(name).map(pose)).getOrElse(Nowhere)
 
   def pose(thing: SceneObject): Pose =
-    Pose(Vector3r(thing.place.position), Quaternionr(thing.place.orientation))
+    Pose(thing.place.position, thing.place.orientation)
 
   def pose(vehicle: SimulatedVehicle): Pose =
-    Pose(Vector3r(vehicle.worldPosition(world.now)), Quaternionr(vehicle.orientation))
+    Pose(vehicle.worldPosition(world.now), vehicle.orientation)
 
 private[simulator] object SceneObjects:
   val Ground: String = Scene.Ground

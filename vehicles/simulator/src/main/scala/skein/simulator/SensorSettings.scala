@@ -11,7 +11,7 @@ import skein.units.Vector3
   *
   * @param captures image settings of `CameraDefaults`, by image type
   */
-final private[simulator] case class SensorSettings(
+final private[skein] case class SensorSettings(
     captures: Map[Int, SensorSettings.Capture],
     cameras: Map[String, Map[String, SensorSettings.Carried]],
     lidars: SensorSettings.Fitted[Lidar],
@@ -29,7 +29,7 @@ final private[simulator] case class SensorSettings(
   def ranger(vehicle: VehicleSettings, name: String): Option[SensorSettings.Ranger] =
     rangers.of(vehicle).find((own, _) => name.isEmpty || own == name).map(_._2)
 
-private[simulator] object SensorSettings:
+private[skein] object SensorSettings:
   /** The sensors of one kind, by name.
     *
     * @param listed those of the vehicles that the file lists
@@ -59,6 +59,9 @@ private[simulator] object SensorSettings:
   val MostPixels: Int = 8192 * 4096
 
   val None: SensorSettings = SensorSettings(Map.empty, Map.empty, Fitted(), Fitted())
+
+  /** The sensors of a world's settings; none if its text is no settings file. */
+  def of(world: WorldSettings): SensorSettings = read(world.text).getOrElse(None)
 
   /** Reads the sensors from the file's text, which is JSON. */
   def read(text: String): Either[SettingsError, SensorSettings] = SettingsSection.read(text)(root =>

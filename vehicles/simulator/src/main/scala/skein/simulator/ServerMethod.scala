@@ -59,20 +59,6 @@ final private[simulator] class ServerMethod(
 
 private[simulator] object ServerMethod:
 
-  def none(name: String)(run: Simulated => CallOutcome): ServerMethod =
-    ServerMethod(name, List.empty, (simulation, _) => run(simulation))
-
-  def one[A](name: String)(run: (Simulated, A) => CallOutcome)(using argument: Argument[A]): ServerMethod =
-    ServerMethod(
-      name,
-      List(argument),
-      (simulation, values) => run(simulation, values.asInstanceOf[Tuple1[A]]._1)
-    )
-
-  /** A function of several parameters, read as the tuple that `run` takes. */
-  inline def many[T <: Tuple](name: String)(run: (Simulated, T) => CallOutcome): ServerMethod =
-    ServerMethod(name, Argument.each[T], (simulation, values) => run(simulation, values.asInstanceOf[T]))
-
   def answer[A: Writer](value: A): CallOutcome = CallOutcome.Answered(writeMsg(value))
 
   /** Runs an effect whose call has no result. */

@@ -1,5 +1,6 @@
 package skein.simulator
 
+import skein.airsim.ImageKind
 import skein.airsim.wire.*
 import skein.scene.render.{Kind, Raster, PngEncoder, Renderer, View}
 import skein.scene.{Moment, Placement}
@@ -53,13 +54,13 @@ private[simulator] object Shots:
 
   /** The kind that is drawn for AirSim's number of an image type. */
   def kindOf(imageType: Int): Either[String, Kind] =
-    if imageType < 0 || imageType >= ImageType.values.length then
-      Left(s"an image type is 0 to ${ImageType.values.length - 1}, not $imageType")
+    if imageType < 0 || imageType >= ImageKind.values.length then
+      Left(s"an image type is 0 to ${ImageKind.values.length - 1}, not $imageType")
     else
-      ImageType.fromOrdinal(imageType) match
-        case ImageType.OpticalFlow | ImageType.OpticalFlowVis =>
-          Left(s"the built-in simulator draws no ${ImageType.fromOrdinal(imageType)}")
-        case kind => Right(Kind.valueOf(kind.toString))
+      ImageKind.fromOrdinal(imageType) match
+        case ImageKind.OpticalFlow | ImageKind.OpticalFlowVis =>
+          Left(s"the built-in simulator draws no ${ImageKind.fromOrdinal(imageType)}")
+        case _ => Right(Kind.fromOrdinal(imageType))
 
   /** The current view through a vehicle's camera. */
   def view(simulation: Simulated, vehicle: Int, camera: String, imageType: Int): View =

@@ -1,7 +1,6 @@
 package skein.simulator
 
 import skein.airsim.VehicleSettings
-import skein.units.Instant
 
 /** The simulation as the server's functions see it. */
 private[simulator] trait Simulated:
@@ -29,11 +28,7 @@ private[simulator] trait Simulated:
   private[simulator] def recording_=(on: Boolean): Unit
 
   /** Adds a plan to a vehicle's buffer, in place of its move, if it has one. */
-  private[simulator] def follow(
-      vehicle: Int,
-      sequence: Long,
-      plan: Vector[(at: Instant, action: Move.Order)]
-  ): Unit
+  private[simulator] def follow(vehicle: Int, sequence: Long, plan: Move.Plan): Unit
 
   /** Returns all vehicles to their starts and drops all moves, including queued ones. */
   private[simulator] def reset(): Unit

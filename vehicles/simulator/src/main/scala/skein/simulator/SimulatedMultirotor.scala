@@ -1,6 +1,6 @@
 package skein.simulator
 
-import skein.airsim.wire.{KinematicsState, RcData}
+import skein.airsim.wire.{CollisionInfo, KinematicsState, RcData, Vector3r}
 import skein.airsim.VehicleSettings
 import skein.scene.{Contact, Scene, SceneObject}
 import skein.units.*
@@ -65,7 +65,9 @@ final private[simulator] class SimulatedMultirotor(
     val contacts = state.contacts
     tuned.step(state, outside.getOrElse(goal), environment)
     sampledAt = at
-    if state.contacts > contacts then touched = Some(Touch(at, state.positionNed))
+    if state.contacts > contacts then
+      val here = Vector3r(state.positionNed)
+      touched = Some(CollisionInfo(true, 0, at, Vector3r(0, 0, -1), here, here, Scene.Ground, -1))
     if scene.objects.nonEmpty then meet(scene, at)
     noticeTakeoffAndLanding()
 

@@ -1,7 +1,7 @@
 package skein.simulator
 
 import skein.airsim.VehicleSettings
-import skein.airsim.wire.KinematicsState
+import skein.airsim.wire.{CollisionInfo, KinematicsState}
 import skein.scene.{Scene, SceneObject}
 import skein.signal.Kinematics
 import skein.units.*
@@ -16,18 +16,18 @@ import skein.vehicle.NoisySensor
 private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings, worldOrigin: GeoLocation):
   val home: GeoLocation = worldOrigin.locate(settings.startNed)
 
-  protected var sampledAt: Instant     = Instant.Epoch
-  protected var resetAt: Instant       = Instant.Epoch
-  private var gpsFrom: Instant         = Instant.Epoch
-  protected var controlled: Boolean    = false
-  protected var touched: Option[Touch] = None
-  private var lastMet: Option[Touch]   = None
-  private var met                      = 0L
-  protected val obstacles: Obstacles   = Obstacles(settings.startNed)
-  private var startedAt                = Instant.Epoch
-  private var sensor                   = Option.empty[NoisySensor]
-  private var isSensing                = () => true
-  private var lastSensed               = Option.empty[Sensed]
+  protected var sampledAt: Instant             = Instant.Epoch
+  protected var resetAt: Instant               = Instant.Epoch
+  private var gpsFrom: Instant                 = Instant.Epoch
+  protected var controlled: Boolean            = false
+  protected var touched: Option[CollisionInfo] = None
+  private var lastMet: Option[CollisionInfo]   = None
+  private var met                              = 0L
+  protected val obstacles: Obstacles           = Obstacles(settings.startNed)
+  private var startedAt                        = Instant.Epoch
+  private var sensor                           = Option.empty[NoisySensor]
+  private var isSensing                        = () => true
+  private var lastSensed                       = Option.empty[Sensed]
 
   /** The vehicle's kind as a word, for messages. */
   def kind: String
@@ -113,21 +113,26 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   def worldPosition(at: Instant): Vector3 = settings.startNed + positionAt(at)
 
+  /** The vehicle's true motion; its position is one in the world, NED. */
+  def worldMotion(at: Instant): Kinematics =
+    Kinematics(worldPosition(at), velocityAt(at), orientation, angularVelocityFrd)
+
   /** Contacts with objects of the scene so far, the ground aside. Touches of one object within
     * [[SimulatedVehicle.OneContact]] of each other are one contact.
     */
   def contacts: Long = met
 
-  protected def meets(touch: Touch): Unit =
+  protected def meets(touch: CollisionInfo): Unit =
     if !lastMet.exists(last =>
-        last.name == touch.name && touch.at.since(last.at) <= SimulatedVehicle.OneContact
+        last.object_name == touch.object_name &&
+          touch.time_stamp.since(last.time_stamp) <= SimulatedVehicle.OneContact
       )
     then met += 1
     lastMet = Some(touch)
     touched = lastMet
 
   /** Takes the last touch of the ground or of an object since the last call. */
-  def takeTouch(): Option[Touch] =
+  def takeTouch(): Option[CollisionInfo] =
     val last = touched
     touched = None
     last

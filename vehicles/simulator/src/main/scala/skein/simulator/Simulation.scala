@@ -3,15 +3,15 @@ package skein.simulator
 import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.VehicleSettings
-import skein.rpc.Encoded
+import skein.rpc.{Encoded, RpcRequest, Rpclib}
 import skein.units.*
 import upack.{Bool, Msg}
 
-/** A received call; `token` identifies its answer.
-  *
-  * @param client the caller: see [[Simulation.depart]]
+/** A received call; `token` identifies its answer. The caller is the request's connection: see
+  * [[Simulation.depart]].
   */
-final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg], client: Long = 0)
+final case class SimulatorCall(token: Long, request: RpcRequest):
+  export request.{connection as client, method, params}
 
 /** The answer to a call: its result, a deferred result, or the text of its error. */
 final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | DeferredResult])
@@ -51,7 +51,7 @@ final class Simulation(
   private[simulator] val speed: Double = settings.speed * settings.world.clockSpeed
 
   private val workers    = settings.newWorkers[SimulatorCall, Waiting]()
-  private val answers    = ArrayBuffer.empty[SimulatorAnswer]
+  private val answers    = mutable.Queue.empty[SimulatorAnswer]
   private val continuing = ArrayBuffer.empty[Long]
   private var until      = startedAt
   private var paused     = false
@@ -81,13 +81,10 @@ final class Simulation(
     // Otherwise every call received during a long step would wait for its share of it.
     if continuing.isEmpty then advance(at)
     if isControl(call.method) then
-      workers.drop(supersedes(call.method, call.params, _)).foreach(giveUp)
+      workers.drop(other => supersedes(call.request, other.request)).foreach(giveUp)
       run(call, at)
     else workers.offer(call)
     settle(at)
-
-  private def supersedes(method: String, params: IndexedSeq[Msg], other: SimulatorCall): Boolean =
-    Simulation.supersedes(method, params, other.method, other.params)
 
   /** Handles a client that sends no further calls. Its calls no longer hold workers; its vehicles continue
     * its last commands.
@@ -107,12 +104,9 @@ final class Simulation(
     */
   def advance(at: Instant): Unit =
     world.heldTo.foreach(_.told(at))
-    var handover = workers.nextHandover
-    while handover.exists(_ <= at) do
-      handover.foreach: due =>
-        runTo(due)
-        handOver(due, due)
-      handover = workers.nextHandover
+    for due <- Iterator.continually(workers.nextHandover).takeWhile(_.exists(_ <= at)).flatten do
+      runTo(due)
+      handOver(due, due)
     runTo(at)
     settle(at)
 
@@ -128,9 +122,7 @@ final class Simulation(
       next.map(_.max(at))
 
   def takeAnswers(): Seq[SimulatorAnswer] =
-    val all = answers.toSeq
-    answers.clear()
-    all
+    answers.dequeueAll(_ => true)
 
   def isPaused: Boolean = paused && continuing.isEmpty
 
@@ -147,11 +139,7 @@ final class Simulation(
     world.add(vehicle)
     workers.addVehicle()
 
-  private[simulator] def follow(
-      vehicle: Int,
-      sequence: Long,
-      plan: Vector[(at: Instant, action: Move.Order)]
-  ): Unit =
+  private[simulator] def follow(vehicle: Int, sequence: Long, plan: Move.Plan): Unit =
     // A move, and those that wait for its lock, are replaced; the settling after this call answers them.
     workers.dismiss(vehicle, all = true).foreach(flight => giveUp(flight.call))
     world.follow(vehicle, sequence, plan)
@@ -220,10 +208,8 @@ final class Simulation(
 
   /** Starts the moves whose lock arrives by `due`. */
   private def handOver(due: Instant, at: Instant): Unit =
-    var next = workers.handOver(due)
-    while next.nonEmpty do
-      next.foreach((vehicle, waiting) => start(vehicle, waiting, at))
-      next = workers.handOver(due)
+    for (vehicle, waiting) <- Iterator.continually(workers.handOver(due)).takeWhile(_.nonEmpty).flatten do
+      start(vehicle, waiting, at)
 
   private def run(call: SimulatorCall, at: Instant): Unit =
     def fail(text: String): Unit = answers += SimulatorAnswer(call.token, Left(text))
@@ -317,7 +303,7 @@ object Simulation:
 
   /** All functions by name; AirSim's form before Cosys-AirSim's. */
   private[simulator] val named: Map[String, Seq[ServerMethod]] =
-    (methods ++ CosysMethods.forms(methods)).groupBy(_.name)
+    (methods ++ CosysMethods.forms).groupBy(_.name)
 
   /** Functions that let a person regain control of a busy simulator, and plans, which hold no worker: they
     * never wait behind moves.
@@ -332,13 +318,9 @@ object Simulation:
   /** Whether a call makes an earlier one, which has not been run, needless: a move before a hover of its
     * vehicle, or before a reset.
     */
-  private[simulator] def supersedes(
-      method: String,
-      params: IndexedSeq[Msg],
-      earlier: String,
-      earlierParams: IndexedSeq[Msg]
-  ): Boolean =
-    Moves(earlier) && earlier != "hover" && (method == "reset" ||
-      method == "hover" && params.nonEmpty && earlierParams.lastOption == params.lastOption)
+  private[simulator] def supersedes(request: RpcRequest, earlier: RpcRequest): Boolean =
+    Moves(earlier.method) && earlier.method != "hover" && (request.method == "reset" ||
+      request.method == "hover" && request.params.nonEmpty &&
+      earlier.params.lastOption == request.params.lastOption)
 
   val methodNames: Set[String] = named.keySet

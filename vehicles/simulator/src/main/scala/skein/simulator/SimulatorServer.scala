@@ -8,7 +8,7 @@ import org.apache.pekko.actor.typed.{ActorRef, Behavior}
 import org.apache.pekko.dispatch.Dispatchers
 import org.apache.pekko.stream.{BoundedSourceQueue, QueueOfferResult}
 import org.apache.pekko.util.ByteString
-import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong, AtomicReference}
+import java.util.concurrent.atomic.AtomicBoolean
 import scala.collection.mutable
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.Try
@@ -35,13 +35,8 @@ import upack.{Bool, Msg}
 final class SimulatorServer private (
     server: RpcServer,
     simulator: ActorRef[SimulatorServer.Message],
-    lines: CallLines[?],
-    behindNanos: AtomicLong,
-    broken: Future[Throwable],
-    peers: Option[PeerServer],
-    counters: PeerCounters,
-    heldUp: AtomicBoolean,
-    commanded: AtomicReference[CommandCounts]
+    running: SimulatorServer.Running,
+    peers: Option[PeerServer]
 ):
 
   /** The listening address, with the actual port. */
@@ -52,22 +47,22 @@ final class SimulatorServer private (
     */
   def peerAddresses: Vector[Address] = peers.fold(Vector.empty)(_.addresses)
 
-  def stats: ServerStats = server.stats.copy(dropped = lines.dropped)
+  def stats: ServerStats = server.stats.copy(dropped = running.lines.dropped)
 
-  def peerStats: PeerStats = counters.stats.copy(ignored = peers.fold(0L)(_.ignored))
+  def peerStats: PeerStats = running.counters.stats.copy(ignored = peers.fold(0L)(_.ignored))
 
   /** Completes if it stops without having been closed, with the reason. */
   val failed: Future[Throwable] =
     given ExecutionContext = ExecutionContext.parasitic
-    Future.firstCompletedOf(Seq(broken, server.failed))
+    Future.firstCompletedOf(Seq(running.broken.future, server.failed))
 
   /** Simulated time skipped so far because the machine was too slow, or suspended. */
-  def behind: Span = Span.ofNanos(behindNanos.get)
+  def behind: Span = running.behind
 
   /** Whether moves have held all workers for longer than [[SimulatorSettings.patience]]. */
-  def hasHeldUp: Boolean = heldUp.get
+  def hasHeldUp: Boolean = running.hasHeldUp
 
-  def commands: CommandCounts = commanded.get
+  def commands: CommandCounts = running.commands
 
   /** The true motion of all vehicles; does not complete once the server is closed. */
   def truth(): Future[SimulatorServer.Truth] =
@@ -124,44 +119,23 @@ object SimulatorServer:
       step: Option[Span] = None
   )(using system: ActorSystem): Future[SimulatorServer] =
     given ExecutionContext = ExecutionContext.parasitic
-    val behind             = AtomicLong()
-    val heldUp             = AtomicBoolean()
-    val commanded          = AtomicReference(CommandCounts.Zero)
-    val broken             = Promise[Throwable]()
-    val lines              = CallLines[Call](isUrgent = call => Simulation.isControl(call.request.method))
-    val work               = AtomicBoolean()
-    val counters           = PeerCounters()
     val beside             = Beside(system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId))
-    val simulator          = system.spawnAnonymous(
-      Behaviors.withTimers(Running(
-        Simulation(settings, clock.now()),
-        onlooker,
-        step,
-        counters,
-        clock,
-        lines,
-        beside,
-        work,
-        behind,
-        heldUp,
-        commanded,
-        broken
-      ).behavior)
-    )
+    val running            = Running(Simulation(settings, clock.now()), onlooker, step, clock, beside)
+    val simulator          = system.spawnAnonymous(Behaviors.withTimers(running.behavior))
     def forget(event: ServerEvent): Unit = event match
       case ServerEvent.Finished(connection)  => simulator ! Message.Gone(connection, isForgotten = false)
       case ServerEvent.Closed(connection, _) =>
-        lines.forget(connection)
+        running.lines.forget(connection)
         beside.forget(connection)
         simulator ! Message.Gone(connection, isForgotten = true)
       case _ => ()
     val bound = RpcServer.bind(transport, settings.address, settings.limits, observer = forget): request =>
       val answer = Promise[Either[String, Msg | Encoded]]()
-      lines.put(request.connection, Call(request, answer))
-      if work.compareAndSet(false, true) then simulator ! Message.Work
+      running.lines.put(request.connection, Call(request, answer))
+      if running.work.compareAndSet(false, true) then simulator ! Message.Work
       answer.future
     bound.failed.foreach(_ => simulator ! Message.Stop)
-    for server <- bound; failure <- broken.future do
+    for server <- bound; failure <- running.broken.future do
       system.log.error(failure, "the simulator has failed; it closes its port")
       server.close()
     val peers = new Peers:
@@ -175,12 +149,12 @@ object SimulatorServer:
         case None        => Future.successful(None)
         case Some(ports) =>
           PeerServer
-            .start(ports, transport, peers, counters)
+            .start(ports, transport, peers, running.counters)
             .map(Some(_))
             .recoverWith: error =>
               simulator ! Message.Stop
               rpc.close().transformWith(_ => Future.failed(error))
-    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, open, counters, heldUp, commanded)
+    yield SimulatorServer(rpc, simulator, running, open)
 
   private[simulator] enum Message:
     /** Calls wait to be run. */
@@ -202,21 +176,25 @@ object SimulatorServer:
   /** Calls run before other work of the process gets its turn: some 0.5 ms. */
   private val CallsAtOnce = 32
 
-  /** @param work whether a [[Message.Work]] was sent but is not yet handled */
+  /** What runs on the simulator's actor; other threads may use its public members. */
   final private class Running(
       simulation: Simulation,
       onlooker: Option[Onlooker],
       step: Option[Span],
-      counters: PeerCounters,
       clock: Clock,
-      lines: CallLines[Call],
-      beside: Beside,
-      work: AtomicBoolean,
-      behind: AtomicLong,
-      heldUp: AtomicBoolean,
-      commanded: AtomicReference[CommandCounts],
-      broken: Promise[Throwable]
+      beside: Beside
   ):
+    val lines    = CallLines[Call](isUrgent = call => Simulation.isControl(call.request.method))
+    val counters = PeerCounters()
+    val broken   = Promise[Throwable]()
+
+    /** Whether a [[Message.Work]] was sent but is not yet handled. */
+    val work = AtomicBoolean()
+
+    @volatile var behind: Span            = Span.Zero
+    @volatile var hasHeldUp: Boolean      = false
+    @volatile var commands: CommandCounts = CommandCounts.Zero
+
     private val waiting                        = mutable.LongMap.empty[Call]
     private var nextToken                      = 0L
     private var wakeAt                         = Option.empty[Instant]
@@ -227,7 +205,7 @@ object SimulatorServer:
     private val outs      = mutable.LongMap.empty[BoundedSourceQueue[ByteString]]
 
     def behavior(timers: TimerScheduler[Message]): Behavior[Message] = Behaviors.setup: context =>
-      def goOn(): Behavior[Message] =
+      def goOn(): Unit =
         takeCalls()
         for answer <- simulation.takeAnswers() do
           waiting.remove(answer.token).foreach(complete(_, answer.result))
@@ -235,9 +213,9 @@ object SimulatorServer:
           for bytes <- datagrams do
             if out.offer(ByteString.fromArrayUnsafe(bytes)) == QueueOfferResult.Dropped then
               counters.dropped.incrementAndGet(): Unit
-        behind.set(simulation.behind.toNanos)
-        heldUp.set(simulation.hasHeldUp)
-        inProcess.foreach(it => commanded.set(it.commands))
+        behind = simulation.behind
+        hasHeldUp = simulation.hasHeldUp
+        inProcess.foreach(it => commands = it.commands)
         val now = clock.now()
         val due = (protocol.flatMap(_.nextDue) ++ inProcess.flatMap(_.nextDue)).flatMap(simulation.comesTo)
         for at <- (simulation.nextWake(now) ++ due.map(_.max(now))).minOption if wakeAt.forall(at < _) do
@@ -247,63 +225,51 @@ object SimulatorServer:
           else timers.startSingleTimer(Message.Wake, at.since(now).toDuration)
         val more = if simulation.isFree then !lines.isEmpty else lines.hasUrgent
         if more && work.compareAndSet(false, true) then context.self ! Message.Work
-        Behaviors.same
 
-      def orEnd(next: => Behavior[Message]): Behavior[Message] =
-        try next
+      def afterwards(handled: => Unit): Behavior[Message] =
+        try
+          handled
+          goOn()
+          Behaviors.same
         catch
           case NonFatal(failure) =>
             val _ = broken.trySuccess(failure)
             Behaviors.stopped
 
-      val _ = orEnd(goOn())
-      Behaviors.receiveMessage:
-        case Message.Work =>
-          work.set(false)
-          orEnd(goOn())
-        case Message.Wake =>
-          wakeAt = None
-          orEnd:
-            simulation.advance(clock.now())
-            goOn()
-        case Message.Look(answer) =>
-          orEnd:
-            simulation.advance(clock.now())
-            answer.success(truth): Unit
-            goOn()
-        case Message.Act(vehicle, action, lasts, stamp) =>
-          orEnd:
-            simulation.advance(clock.now())
-            inProcess.foreach(_.act(vehicle, action, lasts, stamp))
-            // Answers the move that it has ended.
-            simulation.advance(clock.now())
-            goOn()
-        case Message.Gone(connection, isForgotten) =>
-          orEnd:
-            simulation.depart(connection, isForgotten, clock.now())
-            goOn()
-        case Message.Stop         => Behaviors.stopped
-        case Message.Joined(peer) =>
-          outs.update(peer.channel, peer.out)
-          orEnd:
-            protocol.foreach(_.join(peer.channel, peer.systems, peer.isDatagrams))
-            goOn()
-        case Message.Heard(channel, bytes, done) =>
-          orEnd:
-            simulation.advance(clock.now())
-            for vehicles <- protocol do
-              vehicles.receive(channel, bytes)
-              counters.damaged.set(vehicles.damaged)
-              counters.unanswered.set(vehicles.unanswered)
-            // The simulation may have waited for an autopilot.
-            if simulation.settings.hil.nonEmpty then simulation.advance(clock.now())
-            val _ = done.trySuccess(Done)
-            goOn()
-        case Message.Left(channel) =>
-          val _ = outs.remove(channel)
-          orEnd:
-            protocol.foreach(_.leave(channel))
-            goOn()
+      val _ = afterwards(())
+      Behaviors.receiveMessage: message =>
+        if message == Message.Stop then Behaviors.stopped else afterwards(handle(message))
+
+    private def handle(message: Message): Unit = message match
+      case Message.Work => work.set(false)
+      case Message.Wake =>
+        wakeAt = None
+        simulation.advance(clock.now())
+      case Message.Look(answer) =>
+        simulation.advance(clock.now())
+        answer.success(truth): Unit
+      case Message.Act(vehicle, action, lasts, stamp) =>
+        simulation.advance(clock.now())
+        inProcess.foreach(_.act(vehicle, action, lasts, stamp))
+        // Answers the move that it has ended.
+        simulation.advance(clock.now())
+      case Message.Gone(connection, isForgotten) => simulation.depart(connection, isForgotten, clock.now())
+      case Message.Joined(peer)                  =>
+        outs.update(peer.channel, peer.out)
+        protocol.foreach(_.join(peer.channel, peer.systems, peer.isDatagrams))
+      case Message.Heard(channel, bytes, done) =>
+        simulation.advance(clock.now())
+        for vehicles <- protocol do
+          vehicles.receive(channel, bytes)
+          counters.damaged.set(vehicles.damaged)
+          counters.unanswered.set(vehicles.unanswered)
+        // The simulation may have waited for an autopilot.
+        if simulation.settings.hil.nonEmpty then simulation.advance(clock.now())
+        val _ = done.trySuccess(Done)
+      case Message.Left(channel) =>
+        val _ = outs.remove(channel)
+        protocol.foreach(_.leave(channel))
+      case Message.Stop => ()
 
     private def truth =
       val world = simulation.world
@@ -312,12 +278,7 @@ object SimulatorServer:
         world.vehicles.map: vehicle =>
           (
             name = vehicle.settings.name,
-            kinematics = Kinematics(
-              vehicle.settings.startNed + vehicle.positionAt(world.now),
-              vehicle.velocityAt(world.now),
-              vehicle.orientation,
-              vehicle.angularVelocityFrd
-            ),
+            kinematics = vehicle.worldMotion(world.now),
             contacts = vehicle.contacts
           )
       )
@@ -342,24 +303,13 @@ object SimulatorServer:
             case None       => left = 0
             case Some(call) => run(call)
         else
-          lines.takeUrgent(supersedes) match
+          lines.takeUrgent((call, earlier) => Simulation.supersedes(call.request, earlier.request)) match
             case None                     => left = 0
             case Some((call, superseded)) =>
               superseded.foreach(_.answer.success(Right(Bool(false))))
               run(call)
 
-    private def supersedes(call: Call, earlier: Call) = Simulation.supersedes(
-      call.request.method,
-      call.request.params,
-      earlier.request.method,
-      earlier.request.params
-    )
-
     private def run(call: Call): Unit =
-      val Call(request, _) = call
       waiting.update(nextToken, call)
-      simulation.receive(
-        SimulatorCall(nextToken, request.method, request.params, request.connection),
-        clock.now()
-      )
+      simulation.receive(SimulatorCall(nextToken, call.request), clock.now())
       nextToken += 1

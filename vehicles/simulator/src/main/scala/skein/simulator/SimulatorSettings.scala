@@ -53,8 +53,7 @@ final case class SimulatorSettings(
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
 
   /** The vehicles' sensors; none if the file's text cannot be read, which [[SettingsFile]] reports. */
-  private[simulator] def equipment: SensorSettings =
-    SensorSettings.read(world.text).getOrElse(SensorSettings.None)
+  private[simulator] def equipment: SensorSettings = SensorSettings.of(world)
 
   /** The kind of its multirotors. External autopilots need sensor readings at whole milliseconds. */
   private[simulator] def multirotors: RotorcraftKind =

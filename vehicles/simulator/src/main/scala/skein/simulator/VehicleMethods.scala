@@ -9,101 +9,78 @@ import upickle.default.Writer
 /** Functions that read or set the state of one vehicle. The state and GPS are what [[SimulatedSensing]] makes
   * of the truth; other sensors report true values. None has a delay; AirSim's GPS reports 0.2 s late.
   */
-private[simulator] object VehicleMethods:
+private[simulator] object VehicleMethods extends MethodList:
   import ServerMethod.*
 
-  val all: Seq[ServerMethod] = Seq(
-    many[(Boolean, String)]("enableApiControl"):
-      case (simulation, (on, name)) =>
-        vehicle(simulation, name)((_, vehicle) => done(vehicle.setApiControl(on)))
-    ,
-    one[String]("isApiControlEnabled")((simulation, name) =>
-      vehicle(simulation, name)((_, vehicle) => answer(vehicle.apiControl))
-    ),
-    many[(Boolean, String)]("armDisarm"):
-      case (simulation, (on, name)) => vehicle(simulation, name)((_, vehicle) => answer(vehicle.arm(on)))
-    ,
-    // AirSim's vehicles have no safety evaluation either, and answer so.
-    many[(Argument.Unsigned32, Float, Int, Float, Vector3r, Float, Float, Float, String)]("setSafety"):
-      case (simulation, (_, _, _, _, _, _, _, _, name)) =>
-        multirotor(simulation, name)((_, _) =>
-          CallOutcome.Threw("The setSafety call requires safety_eval_ptr_ to be set first")
-        )
-    ,
-    many[(RcData, String)]("moveByRC"):
-      case (simulation, (sticks, name)) =>
-        multirotor(simulation, name)((_, vehicle) => done(vehicle.steer(sticks)))
-    ,
-    one[String]("cancelLastTask")((simulation, name) =>
-      vehicle(simulation, name)((index, _) => done(simulation.world.cancelMove(index)))
-    ),
-    one[String]("getMultirotorState")((simulation, name) =>
-      multirotor(simulation, name)((_, vehicle) => answer(state(vehicle, sensed(simulation, vehicle))))
-    ),
-    read("getRotorStates", multirotor)(rotors),
-    one[String]("getHomeGeoPoint")((simulation, name) =>
-      vehicle(simulation, name)((_, vehicle) => answer(GeoPoint(vehicle.home)))
-    ),
-    read("simGetGroundTruthKinematics", simulated)(kinematics),
-    read("simGetGroundTruthEnvironment", simulated)(environment),
-    read("simGetVehiclePose", simulated)(pose),
-    many[(Pose, Boolean, String)]("simSetVehiclePose"):
-      case (simulation, (pose, _, name)) =>
-        simulated(simulation, name): (_, vehicle) =>
-          within(pose.position):
-            done(vehicle.place(pose.position.toVector, pose.orientation.toQuaternion, simulation.world.now))
-    ,
-    one[String]("simGetCollisionInfo")((simulation, name) =>
-      simulated(simulation, name)((_, vehicle) => answer(collision(vehicle.takeTouch())))
-    ),
-    many[(Pose, String)]("skeinHoverAt"):
-      case (simulation, (pose, name)) =>
-        multirotor(simulation, name): (index, vehicle) =>
-          val place = pose.position.toVector
-          if !vehicle.apiControl then CallOutcome.Threw("only a vehicle under api control can hover")
-          else if !vehicle.isAboveGround(place) then
-            CallOutcome.Threw(s"expected a place above the ground, got z = ${place.z} m")
-          else
-            simulation.world.forgetPlans(index)
-            val turn = pose.orientation.toQuaternion
-            within(pose.position):
-              done(vehicle.hoverAt(place, 2 * StrictMath.atan2(turn.z, turn.w), simulation.world.now))
-    ,
-    sensor("getImuData", SensorKind.Imu, "IMU")(imu),
-    sensor("getGpsData", SensorKind.Gps, "gps")(Gps.read),
-    sensor("getBarometerData", SensorKind.Barometer, "barometer")(barometer),
-    sensor("getMagnetometerData", SensorKind.Magnetometer, "magnetometer")(magnetometer),
-    many[(String, String)]("getLidarData"):
-      case (simulation, (sensor, name)) =>
-        vehicle(simulation, name): (index, vehicle) =>
-          val scan =
-            for
-              (own, lidar) <- simulation.equipment.lidar(vehicle.settings, sensor)
-              scan         <- simulation.world.scanOf(index, own, lidar)
-            yield scan
-          scan.fold(missing("lidar", sensor)): scan =>
-            val ids = simulation.objects.ids
-            CallOutcome.Draws(() => LidarData.encode(scan.data(ids(_))))
-    ,
-    many[(String, String)]("getDistanceSensorData"):
-      case (simulation, (sensor, name)) =>
-        vehicle(simulation, name): (index, vehicle) =>
-          simulation.equipment.ranger(vehicle.settings, sensor).fold(missing("distance sensor", sensor)):
-            ranger => answer(distance(simulation, index, ranger))
+  many[(Boolean, String)]("enableApiControl"):
+    case (simulation, (on, name)) =>
+      vehicle(simulation, name)((_, vehicle) => done(vehicle.setApiControl(on)))
+  read("isApiControlEnabled", vehicle)((vehicle, _) => vehicle.apiControl)
+  many[(Boolean, String)]("armDisarm"):
+    case (simulation, (on, name)) => vehicle(simulation, name)((_, vehicle) => answer(vehicle.arm(on)))
+  // AirSim's vehicles have no safety evaluation either, and answer so.
+  many[(Argument.Unsigned32, Float, Int, Float, Vector3r, Float, Float, Float, String)]("setSafety"):
+    case (simulation, (_, _, _, _, _, _, _, _, name)) =>
+      multirotor(simulation, name)((_, _) =>
+        CallOutcome.Threw("The setSafety call requires safety_eval_ptr_ to be set first")
+      )
+  many[(RcData, String)]("moveByRC"):
+    case (simulation, (sticks, name)) =>
+      multirotor(simulation, name)((_, vehicle) => done(vehicle.steer(sticks)))
+  one[String]("cancelLastTask")((simulation, name) =>
+    vehicle(simulation, name)((index, _) => done(simulation.world.cancelMove(index)))
   )
-
-  /** A function that reads the current state of a vehicle found by its name. */
-  private def read[V, A: Writer](
-      method: String,
-      find: (Simulated, String) => ((Int, V) => CallOutcome) => CallOutcome
-  )(value: (V, Instant) => A): ServerMethod =
-    one[String](method): (simulation, name) =>
-      find(simulation, name)((_, vehicle) => answer(value(vehicle, simulation.world.now)))
+  one[String]("getMultirotorState")((simulation, name) =>
+    multirotor(simulation, name)((_, vehicle) => answer(state(vehicle, sensed(simulation, vehicle))))
+  )
+  read("getRotorStates", multirotor)(rotors)
+  read("getHomeGeoPoint", vehicle)((vehicle, _) => GeoPoint(vehicle.home))
+  read("simGetGroundTruthKinematics", simulated)(kinematics)
+  read("simGetGroundTruthEnvironment", simulated)(environment)
+  read("simGetVehiclePose", simulated)(pose)
+  many[(Pose, Boolean, String)]("simSetVehiclePose"):
+    case (simulation, (pose, _, name)) =>
+      simulated(simulation, name): (_, vehicle) =>
+        within(pose.position):
+          done(vehicle.place(pose.position.toVector, pose.orientation.toQuaternion, simulation.world.now))
+  read("simGetCollisionInfo", simulated)((vehicle, _) => vehicle.takeTouch().getOrElse(CollisionInfo.None))
+  many[(Pose, String)]("skeinHoverAt"):
+    case (simulation, (pose, name)) =>
+      multirotor(simulation, name): (index, vehicle) =>
+        val place = pose.position.toVector
+        if !vehicle.apiControl then CallOutcome.Threw("only a vehicle under api control can hover")
+        else if !vehicle.isAboveGround(place) then
+          CallOutcome.Threw(s"expected a place above the ground, got z = ${place.z} m")
+        else
+          simulation.world.forgetPlans(index)
+          val turn = pose.orientation.toQuaternion
+          within(pose.position):
+            done(vehicle.hoverAt(place, 2 * StrictMath.atan2(turn.z, turn.w), simulation.world.now))
+  sensor("getImuData", SensorKind.Imu, "IMU")(imu)
+  sensor("getGpsData", SensorKind.Gps, "gps")(Gps.read)
+  sensor("getBarometerData", SensorKind.Barometer, "barometer")(barometer)
+  sensor("getMagnetometerData", SensorKind.Magnetometer, "magnetometer")(magnetometer)
+  many[(String, String)]("getLidarData"):
+    case (simulation, (sensor, name)) =>
+      vehicle(simulation, name): (index, vehicle) =>
+        val scan =
+          for
+            (own, lidar) <- simulation.equipment.lidar(vehicle.settings, sensor)
+            scan         <- simulation.world.scanOf(index, own, lidar)
+          yield scan
+        scan.fold(missing("lidar", sensor)): scan =>
+          val ids = simulation.objects.ids
+          CallOutcome.Draws(() => LidarData.encode(scan.data(ids(_))))
+  many[(String, String)]("getDistanceSensorData"):
+    case (simulation, (sensor, name)) =>
+      vehicle(simulation, name): (index, vehicle) =>
+        simulation.equipment.ranger(vehicle.settings, sensor).fold(missing("distance sensor", sensor)):
+          ranger => answer(distance(simulation, index, ranger))
 
   /** A function that reads a sensor by name; an empty name means the first of its kind. */
   private def sensor[A: Writer](method: String, kind: SensorKind, called: String)(
       value: (SimulatedVehicle, Instant) => A
-  ): ServerMethod =
+  ): Unit =
     many[(String, String)](method):
       case (simulation, (sensor, name)) =>
         vehicle(simulation, name): (_, vehicle) =>
@@ -123,7 +100,7 @@ private[simulator] object VehicleMethods:
       math.min(met, ranger.mostM).toFloat,
       ranger.leastM.toFloat,
       ranger.mostM.toFloat,
-      Pose(Vector3r(ranger.place.position), Quaternionr(ranger.place.orientation))
+      Pose(ranger.place.position, ranger.place.orientation)
     )
 
   def missing(kind: String, sensor: String): CallOutcome =
@@ -155,19 +132,7 @@ private[simulator] object VehicleMethods:
   )
 
   private def pose(vehicle: SimulatedVehicle, at: Instant) =
-    Pose(Vector3r(vehicle.positionAt(at)), Quaternionr(vehicle.orientation))
-
-  private def collision(touch: Option[Touch]) = touch.fold(CollisionInfo.None): touch =>
-    CollisionInfo(
-      true,
-      touch.depthM.toFloat,
-      touch.at,
-      Vector3r(touch.normal),
-      Vector3r(touch.pointNed),
-      Vector3r(touch.positionNed),
-      touch.name,
-      -1
-    )
+    Pose(vehicle.positionAt(at), vehicle.orientation)
 
   private def imu(vehicle: SimulatedVehicle, at: Instant) =
     // Physics does not move a vehicle that stands on the ground.

@@ -3,7 +3,8 @@ package skein.simulator
 import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.{VehicleSettings, WorldSettings}
-import skein.scene.{Bodies, Lidar, Placement, Scene}
+import skein.airsim.wire.Pose
+import skein.scene.{Bodies, Lidar, Moment, Placement, Scene}
 import skein.signal.SplitMix64
 import skein.units.*
 import skein.vehicle.{PathFollowing, RotorcraftKind}
@@ -29,7 +30,7 @@ final class World(
   private var present    = settings.vehicles.map(made)
   private val moves      = ArrayBuffer.fill(present.size)(Option.empty[Running])
   private val followed   = mutable.HashMap.empty[Int, FollowedPlan]
-  private val ended      = ArrayBuffer.empty[Ended]
+  private val ended      = mutable.Queue.empty[Ended]
   private val stepLength = Span.ofSeconds(kind.stepS)
   private var clock      = start
   private var nextStep   = start + stepLength
@@ -100,11 +101,10 @@ final class World(
     */
   def advanceTo(to: Instant): Unit =
     for held <- lockstep do
-      var next = if held.isWaiting then None else held.stop(to)
-      while next.exists(_ <= to) do
-        next.foreach(runTo)
+      def next = if held.isWaiting then None else held.stop(to)
+      for stop <- Iterator.continually(next).takeWhile(_.exists(_ <= to)).flatten do
+        runTo(stop)
         held.reached()
-        next = if held.isWaiting then None else held.stop(to)
     if !lockstep.exists(_.isWaiting) then runTo(to)
 
   private def runTo(to: Instant): Unit =
@@ -128,11 +128,7 @@ final class World(
     takeTurn(vehicle)
 
   /** Adds a plan to the vehicle's buffer; its move ends. Only multirotors have such a buffer. */
-  private[simulator] def follow(
-      vehicle: Int,
-      sequence: Long,
-      plan: Vector[(at: Instant, action: Move.Order)]
-  ): Unit =
+  private[simulator] def follow(vehicle: Int, sequence: Long, plan: Move.Plan): Unit =
     end(vehicle, result = false)
     val buffer = followed.getOrElseUpdate(vehicle, FollowedPlan())
     buffer.receive(sequence, plan, clock)
@@ -149,21 +145,14 @@ final class World(
   private[simulator] def isMoving(vehicle: Int): Boolean = moves(vehicle).nonEmpty
 
   /** Takes the moves that have ended since the last call. */
-  def takeEnded(): Seq[Ended] =
-    val all = ended.toSeq
-    ended.clear()
-    all
+  def takeEnded(): Seq[Ended] = ended.dequeueAll(_ => true)
 
   /** Whether [[takeEnded]] would return anything. */
   def hasEnded: Boolean = ended.nonEmpty
 
   /** The earliest time at which the next move can end. */
   def nextEndAt: Option[Instant] =
-    var next = Option.empty[Instant]
-    for move <- moves; running <- move do
-      val end = running.dueAt.max(running.startedAt + running.move.lastsAtLeast)
-      if next.forall(end < _) then next = Some(end)
-    next
+    moves.flatten.map(running => running.dueAt.max(running.startedAt + running.move.lastsAtLeast)).minOption
 
   def reset(): Unit =
     vehicles.indices.foreach(cancelMove)
@@ -192,18 +181,14 @@ final class World(
     else scans.newest(vehicle, name)
 
   private def scan(carried: Scans.Carried, at: Instant, count: Long): Scan =
-    val vehicle = carried.vehicle
-    Scan(
-      at,
-      count,
-      SplitMix64.seedOf(SplitMix64.seedOf(vehicle, carried.name.hashCode), count),
-      carried.lidar,
-      vehicle,
-      placeOf(vehicle, at),
-      vehicles(vehicle).settings.startNed,
-      scene,
-      bodies(at)
-    )
+    val Scans.Carried(index, name, lidar) = carried
+    val (place, origin)                   = (placeOf(index, at), vehicles(index).settings.startNed)
+    val moment                            = Moment(scene, bodies(at))
+    // Differs between vehicles, lidars and scans.
+    val noise  = SplitMix64.seedOf(SplitMix64.seedOf(index, name.hashCode), count)
+    val sensor = place.outside(lidar.place)
+    val pose   = Pose(sensor.position - origin, sensor.orientation)
+    Scan(at, count, pose, () => lidar.scan(moment, place, moment.itemOf(index), origin, noise))
 
   /** Sets the velocity of the air in the world, NED, m/s. */
   def setWind(windNed: Vector3): Unit =
@@ -240,17 +225,10 @@ final class World(
 
   private def takeTurn(vehicle: Int): Unit =
     for running <- moves(vehicle) do
-      running.move.turn(multirotor(vehicle), clock.since(running.startedAt)) match
-        case MoveProgress.Going(goal) =>
-          multirotor(vehicle).command(goal, clock)
-          goOn(vehicle, running)
-        case MoveProgress.Idle                => goOn(vehicle, running)
-        case MoveProgress.Ended(result, goal) =>
-          goal.foreach(multirotor(vehicle).command(_, clock))
-          end(vehicle, result)
-
-  private def goOn(vehicle: Int, running: Running): Unit =
-    moves(vehicle) = Some(running.copy(dueAt = clock + PathFollowing.Period))
+      val one = multirotor(vehicle)
+      running.move.turn(one, clock.since(running.startedAt)).performed(one, clock) match
+        case None         => moves(vehicle) = Some(running.copy(dueAt = clock + PathFollowing.Period))
+        case Some(result) => end(vehicle, result)
 
   private def end(vehicle: Int, result: Boolean): Unit =
     moves(vehicle).foreach(running => ended += Ended(vehicle, running.token, result))

@@ -1,6 +1,7 @@
 package skein.simulator
 
 import skein.airsim.wire.*
+import skein.rpc.Rpclib
 import skein.units.Instant
 import upack.*
 
@@ -124,7 +125,7 @@ class ArgumentSuite extends munit.FunSuite:
       assertEquals(bench.error(method, params*), Rpclib.threw(method, params.size, "std::bad_cast"))
 
   test("a function that fails internally answers with its exception"):
-    val broken = ServerMethod.none("broken")(_ => throw IllegalStateException("within"))
+    val broken = ServerMethod("broken", Nil, (_, _) => throw IllegalStateException("within"))
     broken(Bench().simulation, Vector.empty) match
       case CallOutcome.Threw(text) => assertEquals(text, "java.lang.IllegalStateException: within")
       case other                   => fail(s"$other")

@@ -1,6 +1,6 @@
 package skein.simulator
 
-import skein.rpc.Encoded
+import skein.rpc.{Encoded, RpcRequest}
 import skein.airsim.wire.*
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.scene.Scene
@@ -53,7 +53,7 @@ final private[skein] class Bench(
   def callBy(client: Long)(method: String, params: Msg*): Long =
     val token = nextToken
     nextToken += 1
-    simulation.receive(SimulatorCall(token, method, params.toVector, client), clock)
+    simulation.receive(SimulatorCall(token, RpcRequest(client, method, params.toVector, false)), clock)
     collect()
     token
 

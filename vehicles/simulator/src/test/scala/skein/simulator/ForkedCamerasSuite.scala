@@ -5,7 +5,7 @@ import scala.concurrent.Future
 import skein.airsim.wire.{CameraInfo, ImageResponse, Pose, ProjectionMatrix, Quaternionr, Vector3r}
 import skein.airsim.{AirSimClient, Multirotor, Shot, VehicleSettings, WorldSettings}
 import skein.link.{Address, MemoryNetwork, NetworkPlan}
-import skein.rpc.{RpcClient, RpcServer}
+import skein.rpc.{RpcClient, RpcServer, Rpclib}
 import skein.units.*
 import skein.vtime.VirtualTime
 import upickle.default.writeMsg

@@ -5,6 +5,7 @@ import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.hil.*
 import skein.link.Address
 import skein.mavlink.{FrameReader, HilSensor}
+import skein.rpc.RpcRequest
 import skein.testing.Unhurried
 import skein.units.*
 
@@ -180,7 +181,7 @@ class HilVehiclesSimulation extends munit.FunSuite, Unhurried:
     flown.run(Span.ofSeconds(5))(flying(autopilot))
     assertEquals((autopilot.heard.size, flown.up), (heard, before))
     flown.simulation.receive(
-      SimulatorCall(1, "simContinueForTime", IndexedSeq(upack.Float64(0.2))),
+      SimulatorCall(1, RpcRequest(0, "simContinueForTime", IndexedSeq(upack.Float64(0.2)), false)),
       flown.now
     )
     assertEquals(flown.simulation.takeAnswers(), Nil)

@@ -2,7 +2,7 @@ package skein.simulator
 
 import java.io.ByteArrayInputStream
 import javax.imageio.ImageIO
-import skein.airsim.{VehicleSettings, WorldSettings}
+import skein.airsim.{ImageKind, VehicleSettings, WorldSettings}
 import skein.airsim.wire.*
 import skein.scene.SceneFile
 import skein.scene.render.Palette
@@ -41,7 +41,7 @@ class ImageSuite extends munit.FunSuite:
   private def shoot(bench: Bench, requests: ImageRequest*): Seq[ImageResponse] =
     bench.now[Seq[ImageResponse]]("simGetImages", Arr(requests.map(writeMsg(_))*), Str("A"), Bool(false))
 
-  private def request(kind: ImageType, floats: Boolean = false, camera: String = "0") =
+  private def request(kind: ImageKind, floats: Boolean = false, camera: String = "0") =
     ImageRequest(camera, kind.ordinal, floats, compress = false)
 
   test("images of one call are of one instant, in AirSim's sizes, and show the scene before the camera"):
@@ -51,9 +51,9 @@ class ImageSuite extends munit.FunSuite:
     val Seq(rgb, depth, ids) =
       shoot(
         bench,
-        request(ImageType.Scene),
-        request(ImageType.DepthPlanar, floats = true),
-        request(ImageType.Segmentation)
+        request(ImageKind.Scene),
+        request(ImageKind.DepthPlanar, floats = true),
+        request(ImageKind.Segmentation)
       ): @unchecked
     assertEquals((rgb.width, rgb.height, rgb.image_data_uint8.length), (256, 144, 256 * 144 * 3))
     assertEquals((ids.width, ids.height), (100, 60))
@@ -71,7 +71,7 @@ class ImageSuite extends munit.FunSuite:
     place(bench, "A", Vector3(0, 0, -3))
     place(bench, "B", Vector3(-2, 0, -3))
     bench.tell("simSetSegmentationObjectID", Str("B"), Int32(200), Bool(false))
-    val Seq(ids) = shoot(bench, request(ImageType.Infrared)): @unchecked
+    val Seq(ids) = shoot(bench, request(ImageKind.Infrared)): @unchecked
     assert(ids.image_data_uint8.contains(200.toByte))
     assert(!ids.image_data_uint8.contains(SceneObjects.defaultId("A").toByte))
 
@@ -90,7 +90,7 @@ class ImageSuite extends munit.FunSuite:
       {"ImageType": 0, "FOV_Degrees": 60}, {"ImageType": 1, "FOV_Degrees": 30}]}}}}}"""
     val bench = Bench(Seq("A"), text = text)
     def fovs  =
-      for kind <- Seq(ImageType.Scene, ImageType.DepthPlanar, ImageType.Segmentation)
+      for kind <- Seq(ImageKind.Scene, ImageKind.DepthPlanar, ImageKind.Segmentation)
       yield (Shots.view(bench.simulation, 0, "front_center", kind.ordinal).fovDeg * 1000).round
     bench.tell(
       "simSetCameraPose",
@@ -120,9 +120,9 @@ class ImageSuite extends munit.FunSuite:
     def digest(bench: Bench) =
       place(bench, "A", Vector3(1, 2, -3))
       place(bench, "B", Vector3(0, 2, -3))
-      shoot(bench, ImageType.values.take(8).map(request(_)).toSeq*).map(_.image_data_uint8.toSeq)
+      shoot(bench, ImageKind.values.take(8).map(request(_)).toSeq*).map(_.image_data_uint8.toSeq)
     val flown = this.bench()
-    shoot(flown, request(ImageType.Scene))
+    shoot(flown, request(ImageKind.Scene))
     flown.tell("simContinueForTime", Float64(1))
     flown.tell("reset")
     assertEquals(digest(flown), digest(this.bench()))
@@ -131,12 +131,12 @@ class ImageSuite extends munit.FunSuite:
     val bench                            = this.bench()
     def refusal(requests: ImageRequest*) =
       bench.error("simGetImages", Arr(requests.map(writeMsg(_))*), Str("A"), Bool(false))
-    assert(refusal(request(ImageType.OpticalFlow)).contains("draws no OpticalFlow"))
-    assert(refusal(request(ImageType.Scene).copy(image_type =
+    assert(refusal(request(ImageKind.OpticalFlow)).contains("draws no OpticalFlow"))
+    assert(refusal(request(ImageKind.Scene).copy(image_type =
       10
     )).contains("an image type is 0 to 9, not 10"))
-    assert(refusal(request(ImageType.Scene, camera = "nosuch")).contains("No camera with name nosuch exist"))
-    assert(refusal(Seq.fill(65)(request(ImageType.Scene))*).contains("at most 64 images"))
+    assert(refusal(request(ImageKind.Scene, camera = "nosuch")).contains("No camera with name nosuch exist"))
+    assert(refusal(Seq.fill(65)(request(ImageKind.Scene))*).contains("at most 64 images"))
 
   test("detections are the filtered objects with a visible pixel, with the box around their pixels"):
     val bench = this.bench()
@@ -164,7 +164,7 @@ class ImageSuite extends munit.FunSuite:
     place(bench, "A", Vector3(0, 0, -3))
     place(bench, "B", Vector3(0, 50, -3))
     assertEqualsFloat(
-      shoot(bench, request(ImageType.DepthPlanar, floats = true)).head.image_data_float(72 * 256 + 128),
+      shoot(bench, request(ImageKind.DepthPlanar, floats = true)).head.image_data_float(72 * 256 + 128),
       28.75f,
       1e-3f
     )

@@ -3,6 +3,7 @@ package skein.simulator
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.policy.{Action, Yaw}
+import skein.rpc.RpcRequest
 import skein.signal.Kinematics
 import skein.units.*
 import upack.{Bool, Float32, Int32, Msg, Str}
@@ -31,7 +32,7 @@ class InProcessSuite extends munit.FunSuite:
     def last(vehicle: Int): Kinematics = seen.last.vehicles(vehicle).kinematics
 
     def call(method: String, params: Msg*): Unit =
-      simulation.receive(SimulatorCall(0, method, params.toVector), now)
+      simulation.receive(SimulatorCall(0, RpcRequest(0, method, params.toVector, false)), now)
 
   private val climb: Kinematics => Action = _ => Action.Velocity(Vector3(0, 0, -2))
 

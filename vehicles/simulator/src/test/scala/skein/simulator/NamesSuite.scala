@@ -2,6 +2,7 @@ package skein.simulator
 
 import skein.airsim.wire.*
 import skein.airsim.{SensorKind, VehicleSettings}
+import skein.rpc.Rpclib
 import skein.units.*
 import upack.{Obj, Str}
 

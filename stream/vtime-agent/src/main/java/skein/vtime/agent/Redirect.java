@@ -3,6 +3,7 @@ package skein.vtime.agent;
 import java.time.Clock;
 import java.time.Duration;
 import java.time.Instant;
+import java.time.InstantSource;
 import java.time.LocalDate;
 import java.time.LocalDateTime;
 import java.time.LocalTime;
@@ -11,6 +12,7 @@ import java.time.ZoneId;
 import java.time.ZoneOffset;
 import java.time.ZonedDateTime;
 import java.util.Date;
+import java.util.Objects;
 import java.util.Random;
 import java.util.SplittableRandom;
 import java.util.UUID;
@@ -26,6 +28,19 @@ import java.util.random.RandomGenerator;
  */
 public final class Redirect {
   private static final ThreadLocal<Environment> ENVIRONMENT = new ThreadLocal<>();
+
+  private static final InstantSource NOW =
+      new InstantSource() {
+        @Override
+        public Instant instant() {
+          return instantNow();
+        }
+
+        @Override
+        public String toString() {
+          return "Redirected";
+        }
+      };
 
   private Redirect() {}
 
@@ -63,7 +78,7 @@ public final class Redirect {
   }
 
   public static Clock clock(ZoneId zone) {
-    return new RedirectedClock(zone, Redirect::instantNow, Redirect::currentTimeMillis);
+    return NOW.withZone(Objects.requireNonNull(zone, "zone"));
   }
 
   public static Clock clockUtc() {

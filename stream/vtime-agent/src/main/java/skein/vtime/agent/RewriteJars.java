@@ -1,8 +1,8 @@
 package skein.vtime.agent;
 
+import java.io.BufferedOutputStream;
 import java.io.IOException;
 import java.io.UncheckedIOException;
-import java.net.MalformedURLException;
 import java.net.URL;
 import java.net.URLClassLoader;
 import java.nio.file.Files;
@@ -36,8 +36,10 @@ public final class RewriteJars {
     try (Stream<Path> files = Files.list(Path.of(folder[0]))) {
       jars = files.filter(file -> file.toString().endsWith(".jar")).sorted().toList();
     }
+    var urls = new URL[jars.size()];
+    for (int i = 0; i < urls.length; i++) urls[i] = jars.get(i).toUri().toURL();
     // Stack map frames are recomputed, which needs the class hierarchy.
-    try (var classes = new URLClassLoader(jars.stream().map(RewriteJars::url).toArray(URL[]::new))) {
+    try (var classes = new URLClassLoader(urls)) {
       var rewriter = new Rewriter(Rewriter.PACKAGES, RewriteJars::fail);
       jars.parallelStream().forEach(jar -> rewrite(jar, rewriter, classes));
     }
@@ -56,7 +58,7 @@ public final class RewriteJars {
           if (after != before) changed.put(entry.getName(), after);
         }
         if (changed.isEmpty() && zip.getEntry(AGENT) == null) return;
-        try (var out = new ZipOutputStream(Files.newOutputStream(rewritten))) {
+        try (var out = new ZipOutputStream(new BufferedOutputStream(Files.newOutputStream(rewritten)))) {
           for (var entry : Collections.list(zip.entries())) {
             var bytes = changed.get(entry.getName());
             write(out, entry.getName(), entry.getTime(), bytes == null ? read(zip, entry) : bytes);
@@ -89,14 +91,6 @@ public final class RewriteJars {
     out.putNextEntry(entry);
     out.write(bytes);
     out.closeEntry();
-  }
-
-  private static URL url(Path jar) {
-    try {
-      return jar.toUri().toURL();
-    } catch (MalformedURLException impossible) {
-      throw new AssertionError(impossible);
-    }
   }
 
   private static void fail(String className, Throwable cause) {

@@ -1,13 +1,10 @@
 package skein.airsim.wire
 
 import skein.units.Instant
-import upickle.default.ReadWriter
-import upickle.implicits.serializeDefaults
 
 /** A car's pedals, steering wheel and gear lever. Throttle and steering −1 to 1, brake 0 to 1; `manual_gear`
   * counts only with `is_manual_gear`, −1 is reverse.
   */
-@serializeDefaults(true)
 final private[skein] case class CarControls(
     throttle: Float = 0,
     steering: Float = 0,
@@ -16,11 +13,11 @@ final private[skein] case class CarControls(
     is_manual_gear: Boolean = false,
     manual_gear: Int = 0,
     gear_immediate: Boolean = true
-) derives ReadWriter
+) derives Fields
 
 /** The state of a camera rig that is no vehicle; only in Cosys-AirSim. */
 final private[skein] case class ComputerVisionState(kinematics_estimated: KinematicsState, timestamp: Instant)
-    derives ReadWriter
+    derives Fields
 
 /** A car's state: speed along the heading in m/s, negative in reverse; engine speed in turns a minute.
   * `skein_missing`: see [[MultirotorState]].
@@ -34,4 +31,4 @@ final private[skein] case class CarState(
     kinematics_estimated: KinematicsState,
     timestamp: Instant,
     skein_missing: Boolean = false
-) derives ReadWriter
+) derives Fields

@@ -1,7 +1,5 @@
 package skein.airsim.wire
 
-import upickle.default.ReadWriter
-
 /** An object in a camera's view.
   *
   * @param box2D bounding box in the image, pixels from the upper left corner
@@ -14,8 +12,8 @@ final private[skein] case class DetectionInfo(
     box2D: Box2D,
     box3D: Box3D,
     relative_pose: Pose
-) derives ReadWriter
+) derives Fields
 
-final private[skein] case class Vector2r(x_val: Float, y_val: Float) derives ReadWriter
-final private[skein] case class Box2D(min: Vector2r, max: Vector2r) derives ReadWriter
-final private[skein] case class Box3D(min: Vector3r, max: Vector3r) derives ReadWriter
+final private[skein] case class Vector2r(x_val: Float, y_val: Float) derives Fields
+final private[skein] case class Box2D(min: Vector2r, max: Vector2r) derives Fields
+final private[skein] case class Box3D(min: Vector3r, max: Vector3r) derives Fields

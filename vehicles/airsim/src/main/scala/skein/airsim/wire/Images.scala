@@ -2,11 +2,10 @@ package skein.airsim.wire
 
 import skein.rpc.{Encoded, MessageWriter}
 import skein.units.Instant
-import upack.{Binary, Msg, Str}
-import upickle.default.{ReadWriter, writeMsg}
-import upickle.implicits.serializeDefaults
+import upack.Binary
+import upickle.default.writeMsg
 
-/** A request for one image; `image_type` is an [[ImageType]]'s number. Cosys-AirSim's additional key is left
+/** A request for one image; `image_type` is an `ImageKind`'s number. Cosys-AirSim's additional key is left
   * out; its server does not need it.
   */
 final private[skein] case class ImageRequest(
@@ -14,13 +13,7 @@ final private[skein] case class ImageRequest(
     image_type: Int,
     pixels_as_float: Boolean,
     compress: Boolean
-) derives ReadWriter
-
-/** Kinds of images; the ordinals are AirSim's numbers. */
-private[skein] enum ImageType:
-  case Scene, DepthPlanar, DepthPerspective, DepthVis, DisparityNormalized, Segmentation, SurfaceNormals,
-    Infrared,
-    OpticalFlow, OpticalFlowVis
+) derives Fields
 
 /** One image of an answer.
   *
@@ -30,7 +23,6 @@ private[skein] enum ImageType:
   * @param camera_position the camera's position in the frame of its vehicle, NED, m
   * @param time_stamp time of exposure, on the simulator's clock
   */
-@serializeDefaults(true)
 final private[skein] case class ImageResponse(
     image_data_uint8: Array[Byte] = Array.emptyByteArray,
     image_data_float: Array[Float] = Array.emptyFloatArray,
@@ -44,7 +36,7 @@ final private[skein] case class ImageResponse(
     width: Int = 0,
     height: Int = 0,
     image_type: Int = 0
-) derives ReadWriter
+) derives Fields
 
 private[skein] object ImageResponse:
 
@@ -53,23 +45,8 @@ private[skein] object ImageResponse:
     */
   def encode(images: Seq[ImageResponse]): Encoded = MessageWriter.encode: out =>
     out.array(images.size)
-    images.foreach(write(out, _))
-
-  private def write(out: MessageWriter, image: ImageResponse): Unit =
-    def field(name: String, value: Msg): Unit =
-      out.value(Str(name))
-      out.value(value)
-    out.map(12)
-    field("image_data_uint8", Binary(image.image_data_uint8))
-    out.value(Str("image_data_float"))
-    out.floats(image.image_data_float)
-    field("camera_position", writeMsg(image.camera_position))
-    field("camera_name", Str(image.camera_name))
-    field("camera_orientation", writeMsg(image.camera_orientation))
-    field("time_stamp", writeMsg(image.time_stamp))
-    field("message", Str(image.message))
-    field("pixels_as_float", writeMsg(image.pixels_as_float))
-    field("compress", writeMsg(image.compress))
-    field("width", writeMsg(image.width))
-    field("height", writeMsg(image.height))
-    field("image_type", writeMsg(image.image_type))
+    for image <- images do
+      val small = image.copy(Array.emptyByteArray, Array.emptyFloatArray)
+      out.structure(writeMsg(small)):
+        case "image_data_uint8" => out.value(Binary(image.image_data_uint8))
+        case "image_data_float" => out.floats(image.image_data_float)

@@ -1,7 +1,5 @@
 package skein.airsim.wire
 
-import upickle.default.ReadWriter
-
 /** Position (m, from the vehicle's own start), velocity and linear acceleration in NED; angular velocity and
   * acceleration in body FRD. It carries no time stamp.
   */
@@ -12,4 +10,4 @@ final private[skein] case class KinematicsState(
     angular_velocity: Vector3r,
     linear_acceleration: Vector3r,
     angular_acceleration: Vector3r
-) derives ReadWriter
+) derives Fields

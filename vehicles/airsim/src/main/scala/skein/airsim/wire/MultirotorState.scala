@@ -1,8 +1,6 @@
 package skein.airsim.wire
 
 import skein.units.Instant
-import upickle.default.ReadWriter
-import upickle.implicits.serializeDefaults
 
 /** The part of `getMultirotorState`'s answer that our client reads; further keys, which differ between AirSim
   * and its forks, are skipped. `skein_missing`: see [[MultirotorState]].
@@ -12,7 +10,7 @@ final private[skein] case class MultirotorReading(
     timestamp: Instant,
     landed_state: Int,
     skein_missing: Boolean = false
-) derives ReadWriter
+) derives Fields
 
 /** The state as AirSim's server sends it. `landed_state` is 0 landed, 1 flying. `skein_missing` is absent
   * unless the built-in simulator's sensors have no reading: then this is an earlier one.
@@ -25,7 +23,7 @@ final private[skein] case class MultirotorState(
     landed_state: Int,
     rc_data: RcData,
     skein_missing: Boolean = false
-) derives ReadWriter
+) derives Fields
 
 /** `object_id` is −1 if nothing was touched. */
 final private[skein] case class CollisionInfo(
@@ -37,7 +35,7 @@ final private[skein] case class CollisionInfo(
     position: Vector3r,
     object_name: String,
     object_id: Int
-) derives ReadWriter
+) derives Fields
 
 private[skein] object CollisionInfo:
   val None: CollisionInfo =
@@ -46,7 +44,6 @@ private[skein] object CollisionInfo:
 /** A remote control's sticks, −1 to 1 (throttle 0 to 1). Clients send fewer keys, and others, than AirSim
   * sends back.
   */
-@serializeDefaults(true)
 final private[skein] case class RcData(
     timestamp: Instant = Instant.Epoch,
     pitch: Float = 0,
@@ -59,7 +56,7 @@ final private[skein] case class RcData(
     vendor_id: String = "",
     is_initialized: Boolean = false,
     is_valid: Boolean = false
-) derives ReadWriter
+) derives Fields
 
 private[skein] object RcData:
   val Absent: RcData = RcData()

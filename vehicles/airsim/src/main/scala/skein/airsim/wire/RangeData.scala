@@ -2,9 +2,7 @@ package skein.airsim.wire
 
 import skein.rpc.{Encoded, MessageWriter}
 import skein.units.Instant
-import upack.Str
-import upickle.default.{ReadWriter, writeMsg}
-import upickle.implicits.serializeDefaults
+import upickle.default.writeMsg
 
 /** One lidar scan.
   *
@@ -13,26 +11,20 @@ import upickle.implicits.serializeDefaults
   * @param pose the lidar's pose, in its vehicle's frame
   * @param segmentation one id for each point; Cosys-AirSim sends names instead, which are skipped
   */
-@serializeDefaults(true)
 final private[skein] case class LidarData(
     time_stamp: Instant = Instant.Epoch,
     point_cloud: Array[Float] = Array.emptyFloatArray,
     pose: Pose = Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0)),
     segmentation: Array[Int] = Array.emptyIntArray
-) derives ReadWriter
+) derives Fields
 
 private[skein] object LidarData:
   /** Encodes the answer to `getLidarData`, keys in AirSim's order. */
   def encode(scan: LidarData): Encoded = MessageWriter.encode: out =>
-    out.map(4)
-    out.value(Str("time_stamp"))
-    out.value(writeMsg(scan.time_stamp))
-    out.value(Str("point_cloud"))
-    out.floats(scan.point_cloud)
-    out.value(Str("pose"))
-    out.value(writeMsg(scan.pose))
-    out.value(Str("segmentation"))
-    out.integers(scan.segmentation)
+    val small = scan.copy(point_cloud = Array.emptyFloatArray, segmentation = Array.emptyIntArray)
+    out.structure(writeMsg(small)):
+      case "point_cloud"  => out.floats(scan.point_cloud)
+      case "segmentation" => out.integers(scan.segmentation)
 
 /** Distances in m; `relative_pose` is the sensor's, on its vehicle. */
 final private[skein] case class DistanceSensorData(
@@ -41,4 +33,4 @@ final private[skein] case class DistanceSensorData(
     min_distance: Float,
     max_distance: Float,
     relative_pose: Pose
-) derives ReadWriter
+) derives Fields

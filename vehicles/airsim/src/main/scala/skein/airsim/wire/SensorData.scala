@@ -1,7 +1,6 @@
 package skein.airsim.wire
 
 import skein.units.Instant
-import upickle.default.ReadWriter
 
 /** Angular velocity (rad/s) and specific force (m/s²) in body FRD. */
 final private[skein] case class ImuData(
@@ -9,7 +8,7 @@ final private[skein] case class ImuData(
     orientation: Quaternionr,
     angular_velocity: Vector3r,
     linear_acceleration: Vector3r
-) derives ReadWriter
+) derives Fields
 
 /** Altitude in m, pressure in Pa, `qnh` in hPa. */
 final private[skein] case class BarometerData(
@@ -17,17 +16,17 @@ final private[skein] case class BarometerData(
     altitude: Float,
     pressure: Float,
     qnh: Float
-) derives ReadWriter
+) derives Fields
 
 /** Gauss, body FRD; the covariance is always empty. */
 final private[skein] case class MagnetometerData(
     time_stamp: Instant,
     magnetic_field_body: Vector3r,
     magnetic_field_covariance: Seq[Float]
-) derives ReadWriter
+) derives Fields
 
 final private[skein] case class GpsData(time_stamp: Instant, gnss: GnssReport, is_valid: Boolean)
-    derives ReadWriter
+    derives Fields
 
 /** `eph` and `epv` are the dilutions of precision, `velocity` NED in m/s, `fix_type` 3 a three-dimensional
   * fix, `time_utc` microseconds.
@@ -39,4 +38,4 @@ final private[skein] case class GnssReport(
     velocity: Vector3r,
     fix_type: Int,
     time_utc: Instant
-) derives ReadWriter
+) derives Fields

@@ -1,7 +1,6 @@
 package skein.airsim.wire
 
 import skein.units.Instant
-import upickle.default.ReadWriter
 
 /** Gravity in m/s² (NED), pressure in Pa, temperature in K, density in kg/m³. */
 final private[skein] case class EnvironmentState(
@@ -11,12 +10,12 @@ final private[skein] case class EnvironmentState(
     air_pressure: Float,
     temperature: Float,
     air_density: Float
-) derives ReadWriter
+) derives Fields
 
-final private[skein] case class RotorStates(rotors: Seq[RotorState], timestamp: Instant) derives ReadWriter
+final private[skein] case class RotorStates(rotors: Seq[RotorState], timestamp: Instant) derives Fields
 
 /** Thrust in N and torque in N·m (AirSim calls it `torque_scaler`), both as at sea level; the torque is
   * negative for rotors that turn counter-clockwise. Speed in rad/s, never negative.
   */
 final private[skein] case class RotorState(thrust: Float, torque_scaler: Float, speed: Float)
-    derives ReadWriter
+    derives Fields

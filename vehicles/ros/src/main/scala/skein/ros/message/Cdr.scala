@@ -52,20 +52,17 @@ object Cdr:
   given Cdr[Double]  = of[Double]((value, to) => to.double(value))(_.double())
   given Cdr[String]  = of[String]((value, to) => to.text(value))(_.text())
 
-  given byteSequence: Cdr[ArraySeq[Byte]] = of[ArraySeq[Byte]]((values, to) =>
-    to.int(values.size)
-    to.bytes(values)
-  )(from => from.bytes(from.count(1)))
+  given byteSequence: Cdr[ArraySeq[Byte]]     = packed(1)(_.bytes(_), _.bytes(_))
+  given floatSequence: Cdr[ArraySeq[Float]]   = packed(4)(_.floats(_), _.floats(_))
+  given doubleSequence: Cdr[ArraySeq[Double]] = packed(8)(_.doubles(_), _.doubles(_))
 
-  given floatSequence: Cdr[ArraySeq[Float]] = of[ArraySeq[Float]]((values, to) =>
+  private def packed[A](bytesEach: Int)(
+      put: (CdrWriter, ArraySeq[A]) => Unit,
+      take: (CdrReader, Int) => ArraySeq[A]
+  ) = of[ArraySeq[A]]((values, to) =>
     to.int(values.size)
-    to.floats(values)
-  )(from => from.floats(from.count(4)))
-
-  given doubleSequence: Cdr[ArraySeq[Double]] = of[ArraySeq[Double]]((values, to) =>
-    to.int(values.size)
-    to.doubles(values)
-  )(from => from.doubles(from.count(8)))
+    put(to, values)
+  )(from => take(from, from.count(bytesEach)))
 
   /** A sequence of messages. None is empty, so each takes a byte at least. */
   given sequence[A](using cdr: Cdr[A]): Cdr[Vector[A]] = of[Vector[A]]((values, to) =>
@@ -81,8 +78,7 @@ object Cdr:
     case _: EmptyTuple     => Nil
     case _: (head *: tail) => summonInline[Cdr[head]].asInstanceOf[Cdr[Any]] :: fields[tail]
 
-  private[message] def ofFields[A](mirror: Mirror.ProductOf[A], fields: List[Cdr[Any]]): Cdr[A] = new Cdr[A]:
-    def write(value: A, to: CdrWriter): Unit =
+  private[message] def ofFields[A](mirror: Mirror.ProductOf[A], fields: List[Cdr[Any]]): Cdr[A] =
+    of[A]((value, to) =>
       for (field, cdr) <- value.asInstanceOf[Product].productIterator.zip(fields) do cdr.write(field, to)
-    def read(from: CdrReader): A =
-      mirror.fromProduct(Tuple.fromArray(fields.map(_.read(from)).toArray[Any]))
+    )(from => mirror.fromProduct(Tuple.fromArray(fields.map(_.read(from)).toArray[Any])))

@@ -10,31 +10,17 @@ import scala.collection.immutable.ArraySeq
   */
 final class CdrReader private (body: ByteBuffer):
 
-  private def need(bytes: Int, aligned: Int): Unit =
-    val at = (body.position + aligned - 1) & -aligned
+  private def aligned(bytes: Int, to: Int): ByteBuffer =
+    val at = (body.position + to - 1) & -to
     if body.limit - at < bytes then
       throw CdrError(s"expected $bytes more bytes at byte $at, the message ends at ${body.limit}")
-    val _ = body.position(at)
+    body.position(at)
 
-  def byte(): Byte =
-    need(1, 1)
-    body.get()
-
-  def short(): Short =
-    need(2, 2)
-    body.getShort()
-
-  def int(): Int =
-    need(4, 4)
-    body.getInt()
-
-  def float(): Float =
-    need(4, 4)
-    body.getFloat()
-
-  def double(): Double =
-    need(8, 8)
-    body.getDouble()
+  def byte(): Byte     = aligned(1, 1).get()
+  def short(): Short   = aligned(2, 2).getShort()
+  def int(): Int       = aligned(4, 4).getInt()
+  def float(): Float   = aligned(4, 4).getFloat()
+  def double(): Double = aligned(8, 8).getDouble()
 
   def boolean(): Boolean = byte() match
     case 0    => false
@@ -63,17 +49,16 @@ final class CdrReader private (body: ByteBuffer):
       String(chars, 0, length - 1, UTF_8)
 
   def bytes(count: Int): ArraySeq[Byte] =
-    need(count, 1)
     val read = new Array[Byte](count)
-    val _    = body.get(read)
+    val _    = aligned(count, 1).get(read)
     ArraySeq.unsafeWrapArray(read)
 
   def floats(count: Int): ArraySeq[Float] =
-    if count > 0 then need(4 * count, 4)
+    if count > 0 then aligned(4 * count, 4): Unit
     ArraySeq.unsafeWrapArray(Array.fill(count)(body.getFloat()))
 
   def doubles(count: Int): ArraySeq[Double] =
-    if count > 0 then need(8 * count, 8)
+    if count > 0 then aligned(8 * count, 8): Unit
     ArraySeq.unsafeWrapArray(Array.fill(count)(body.getDouble()))
 
   private[message] def rest: Int = body.remaining

@@ -1,7 +1,7 @@
-package skein.simulator
+package skein.rpc
 
 /** Error texts of rpclib, AirSim's RPC library. */
-private[simulator] object Rpclib:
+private[skein] object Rpclib:
   def unknown(method: String, arguments: Int): String =
     s"rpclib: server could not find function '$method' with argument count $arguments."
 
