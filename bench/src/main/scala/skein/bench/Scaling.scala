@@ -36,8 +36,11 @@ object Scaling:
   private def team(pairs: Int): Rate =
     val rollout =
       Rollout(Engagement.of(PaperDuel(pairs).fleet), LoopTiming.Stream(), DelayTable.vpn, Works.model)
+    def effortRad(episode: Int): Double =
+      rollout.fly(WorldRandom.key(1, 0, episode))
+      rollout.controllers.map(_.effortRad).sum
     val start = System.nanoTime()
-    val sum   = (0 until episodes(pairs)).map(i => rollout.fly(WorldRandom.key(1, 0, i)).meanLast10sM).sum
+    val sum   = (0 until episodes(pairs)).map(effortRad).sum
     Rate(episodes(pairs) * pairs * 1200 / ((System.nanoTime() - start) * 1e-3), 0, sum / episodes(pairs))
 
   private def warmUp(): Unit = for _ <- 1 to 3 do

@@ -1,7 +1,7 @@
 package skein.bench
 
-import skein.forward.{DelayTable, Engagement, LoopTiming, PlantResponse, Rollout, VelocityResponses}
-import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
+import skein.forward.{DelayTable, Engagement, LoopTiming, PlantResponse, VelocityResponses}
+import skein.lanes.{ScalarTeam, TeamBatch, TeamCandidate, TeamWorlds}
 import skein.lanes.plant.LaneQuadrotors
 import skein.optimise.DistanceTerm
 import skein.policy.{NeuralPolicy, NeuralShape, PaperPursuer, Policy, Role}
@@ -43,8 +43,10 @@ object Works:
 
   val streamScalar: Work = Work("stream over vpn, scalar", AgentStep): thread =>
     val episodes = 256
-    val rollout  = Rollout(duel, LoopTiming.Stream(), DelayTable.vpn, model)
-    val sum      = (0 until episodes).map(i => rollout.fly(WorldRandom.key(thread, 0, i)).meanLast10sM).sum
+    val scalar   = ScalarTeam(LoopTiming.Stream(), model)
+    val team     = TeamCandidate(duel, DistanceTerm.Last10s.judged(60, 0.1).toVector)
+    val sum      =
+      (0 until episodes).map(i => scalar.fly(team, DelayTable.vpn, WorldRandom.key(thread, 0, i))(0)).sum
     (episodes * 1200.0, sum / episodes)
 
   val quadrotor: Work = Work("quadrotor, SIMD", VehicleStep): _ =>

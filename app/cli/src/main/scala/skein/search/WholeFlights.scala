@@ -34,8 +34,7 @@ final class WholeFlights private (
   def value(scenario: Scenario, objective: Objective, episode: Int): Either[String, Double] =
     sum(scenario, objective, episode).map(_.getOrElse(objective.direction.sign * WholeFlights.Never))
 
-  /** The weighted sum of an episode's measures; None if one has no value. A time that is never reached counts
-    * as the duration, as in [[ScenarioTerm.value]].
+  /** The weighted sum of an episode's measures; None if one has no value.
     *
     * @return Left says why the episode could not be completed
     */
@@ -44,8 +43,7 @@ final class WholeFlights private (
     fly(scenario, episode).map: flown =>
       val values = objective.measures.flatMap: (weight, named) =>
         val measure = measures(named.name)
-        val never   = Option.when(measure.reduced.exists(_.reduction.mayBeNever))(durationS)
-        measure.of(flown).orElse(never).map(weight * _)
+        measure.of(flown).orElse(ScenarioTerm.never(measure, durationS)).map(weight * _)
       Option.when(values.size == objective.measures.size)(values.sum)
 
   /** Number of episodes per second, for people. Simulates two to measure it. */
@@ -106,7 +104,7 @@ object WholeFlights:
       conditions.timing,
       link,
       conditions.vehicle.response
-    ).fly(WorldRandom.key(seed, 0, episode), observer = observer): Unit
+    ).fly(WorldRandom.key(seed, 0, episode), observer = observer)
     Tracks
       .of(agents.zip(samples).map((agent, places) =>
         Track.ofPositions(agent.name, agent.role.name, places.result())

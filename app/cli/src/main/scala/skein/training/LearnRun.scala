@@ -34,7 +34,8 @@ final class LearnRun(
 
   private val files = LearnFile.files(question)
 
-  /** @param isStopped checked at every step; true abandons the current round
+  /** @param isStopped checked at every step, from any thread; true abandons the current round, and a pending
+    *   evaluation
     * @param onRound called with every state
     * @return the progress; Left says why it could not begin
     */
@@ -79,13 +80,17 @@ final class LearnRun(
     val training = Training(task, learner, setup.stepsPerRound)
     var state    = from
     var judging  = Option.empty[Judging]
+    var isCut    = false
     // A stored or returned state has no evaluation pending.
-    def judged(): Unit =
-      judging.foreach(policy => state = scored(state, policy))
+    def judged(): Unit = for policy <- judging do
       judging = None
+      Await.result(policy.came, Duration.Inf) match
+        case Some(tally) => state = scored(state, policy, tally)
+        case None        => isCut = true
+    // Not after a cut evaluation, so that it is repeated.
     def save() =
       judged()
-      folder.fold(Right(()))(LearnFile.write(
+      folder.filterNot(_ => isCut).fold(Right(()))(LearnFile.write(
         _,
         LearnFile(LearnFile.Version, question, state, files, setup.probe),
         learner
@@ -99,7 +104,11 @@ final class LearnRun(
         val isLast = state.rounds == setup.rounds
         if isLast || state.rounds % setup.roundsPerScore == 0 then
           judged()
-          judging = Some(judgingOf(state.rounds * setup.stepsOfRound, SideTask.parameters(learner.actor)))
+          judging = Some(judgingOf(
+            state.rounds * setup.stepsOfRound,
+            SideTask.parameters(learner.actor),
+            isStopped
+          ))
           if isLast || !isElsewhere then judged()
         val isDue = isLast || nanoTime() - savedAt > SaveNanos
         val saved = if isDue then save() else Right(())
@@ -112,15 +121,20 @@ final class LearnRun(
     // The learner has already changed in an abandoned round, so its state is not saved: the round is
     // repeated.
     val ended = mistake.flatMap(_ => told(Right(judged())))
-    Learned(state, ended.left.toOption)
+    Learned(
+      if isCut then state.copy(rounds = state.rounds.min(setup.rounds - 1)) else state,
+      ended.left.toOption
+    )
 
   /** Runs a step; an exception of user code ends learning, and keeps the state. */
   private def told(step: => Either[String, Unit]): Either[String, Unit] =
     try step
     catch case failure: OwnFailure => Left(failure.getMessage)
 
-  private def judgingOf(steps: Long, weights: Vector[Double]): Judging =
-    def tally = judge.tallies(Vector(setup.policy(weights).parameters), 0 until question.episodes).head
+  private def judgingOf(steps: Long, weights: Vector[Double], isStopped: () => Boolean): Judging =
+    def tally = judge
+      .talliesUnless(isStopped)(Vector(setup.policy(weights).parameters), 0 until question.episodes)
+      .map(_.head)
     Judging(
       steps,
       weights,
@@ -128,9 +142,8 @@ final class LearnRun(
       else Future.fromTry(Try(tally))
     )
 
-  private def scored(state: LearnState, policy: Judging): LearnState =
+  private def scored(state: LearnState, policy: Judging, tally: RunningStats): LearnState =
     import policy.*
-    val tally  = Await.result(came, Duration.Inf)
     val better = state.best.forall: best =>
       if setup.game.direction == Direction.Minimise then tally.mean < best.mean
       else tally.mean > best.mean
@@ -140,7 +153,7 @@ final class LearnRun(
     )
 
 object LearnRun:
-  /** A policy of an earlier step count, and its pending evaluation. */
-  private final case class Judging(steps: Long, weights: Vector[Double], came: Future[RunningStats])
+  /** A policy of an earlier step count, and its pending evaluation, None if a stop cancels it. */
+  private final case class Judging(steps: Long, weights: Vector[Double], came: Future[Option[RunningStats]])
 
   private val SaveNanos = 10_000_000_000L

@@ -1,10 +1,12 @@
 package skein.flight
 
 import skein.cli.OurScenarios
-import skein.forward.{DelayTable, Rollout}
+import skein.forward.DelayTable
 import skein.identify.SensorFit
+import skein.lanes.{ScalarTeam, TeamCandidate}
 import skein.loop.{LoopKind, FlightOutcome, Replay}
 import skein.measure.{FlightSummary, RecordedSeeing}
+import skein.optimise.DistanceTerm
 import skein.policy.Role
 import skein.recognition.BlindPursuit
 import skein.scenario.Scenarios
@@ -72,14 +74,12 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
       assertEqualsDouble(again.bearingSdRad, fit.model.bearingSdRad, 1e-5)
       assertEqualsDouble(again.takes.mean.toMillis, fit.model.takes.mean.toMillis, 0.1)
       val conditions = Conditions(loop.label, "drag", 100, 20).resolved.fold(fail(_), identity)
-      val rollout    = Rollout(
-        conditions.game.seeing(Role.Pursuer, Some(again)),
-        conditions.timing,
-        DelayTable.vpn,
-        conditions.vehicle.response
-      )
-      val foreseen = (1 to 8).map(world => rollout.fly(WorldRandom.key(1, 0, world)).meanLast10sM).sum / 8
-      val came     = FlightSummary.of(recording).headline.getOrElse(fail("no distance"))
+      val scalar     = ScalarTeam(conditions.timing, conditions.vehicle.response)
+      val seeing     = conditions.game.seeing(Role.Pursuer, Some(again))
+      val team       = TeamCandidate(seeing, DistanceTerm.Last10s.judged(seeing.durationS, 0.1).toVector)
+      def last10sM(world: Int) = scalar.fly(team, DelayTable.vpn, WorldRandom.key(1, 0, world))(0)
+      val foreseen             = (1 to 8).map(last10sM).sum / 8
+      val came                 = FlightSummary.of(recording).headline.getOrElse(fail("no distance"))
       assertEqualsDouble(clue(foreseen), came, 0.07 * came)
 
   test("with faults of the link, the messages and the simulator, control keeps its rules"):

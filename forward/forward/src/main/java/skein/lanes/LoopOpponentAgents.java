@@ -28,7 +28,7 @@ final class LoopOpponentAgents extends LaneAgents implements TeamMember {
   private final float startHeading;
 
   /** Sum of the changes of the decided headings, in each world, rad. */
-  private final float[] effort;
+  private final float[] effort = new float[WORLDS];
 
   private final LaneObservation observation = new LaneObservation(elapsedS);
   private final Directions known = new Directions(WORLDS);
@@ -36,12 +36,10 @@ final class LoopOpponentAgents extends LaneAgents implements TeamMember {
   /** The camera that is the vehicle's only source about its opponent; null if it reads the opponent. */
   private LoopEye eye;
 
-  /** @param effort receives the sum of the changes of the decided headings in each world, rad */
   LoopOpponentAgents(
-      int self, RolloutAgent agent, LoopLanes loop, LaneDynamics model, LanePolicy policy, float[] effort) {
+      int self, RolloutAgent agent, LoopLanes loop, LaneDynamics model, LanePolicy policy) {
     super(self, loop, model.deadTimeS(), model.flights(agent, loop));
     this.policy = policy;
-    this.effort = effort;
     startHeading = (float) agent.startHeadingRad();
     loop.carryForward(self, agent, vehicles);
   }
@@ -133,7 +131,7 @@ final class LoopOpponentAgents extends LaneAgents implements TeamMember {
 
   @Override
   public void remember(LaneVectors vectors, int endGrains) {
-    policy.rememberBefore(decides, 0, LaneOffers.NONE);
+    policy.rememberBefore(decides, LaneOffers.NONE);
     IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE), end = IntVector.broadcast(INTS, endGrains);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];

@@ -14,16 +14,15 @@ import skein.lanes.timetable.TimetableVehicles;
 /** One of two opponents in many worlds: decides by the difference of their readings. */
 final class OpponentAgents extends TimetableAgents implements TeamMember {
   private final LanePolicy policy;
-  private final float[] effort;
+  private final float[] effort = new float[WORLDS];
   private final float startHeading;
   private final int self;
-  private final LaneObservation observation;
+  private final LaneObservation observation = new LaneObservation();
 
   /** The camera that is the vehicle's only source about its opponent; null if it reads the opponent. */
   private final TimetableEye eye;
 
   /** @param self the vehicle's index, 0 or 1
-   * @param effort receives the sums of the heading's changes
    * @param eye the camera that is its only source about its opponent; null if it reads the opponent
    */
   OpponentAgents(
@@ -31,15 +30,11 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
       RolloutAgent agent,
       LaneDynamics model,
       LanePolicy policy,
-      float[] effort,
-      LaneObservation observation,
       TimetableEye eye) {
     super(model.vehicles(agent));
     this.eye = eye;
     this.self = self;
     this.policy = policy;
-    this.effort = effort;
-    this.observation = observation;
     startHeading = (float) agent.startHeadingRad();
   }
 
@@ -118,12 +113,9 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
     TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
         opponentSeen = views[view + 1 - self] * WORLDS;
-    observation.see(LaneObservation.X, theirs.seenX, opponentSeen, ours.seenX, ownSeen);
-    observation.see(LaneObservation.Y, theirs.seenY, opponentSeen, ours.seenY, ownSeen);
-    if (needsVelocity()) {
-      observation.see(LaneObservation.VX, theirs.seenVx, opponentSeen, ours.seenVx, ownSeen);
-      observation.see(LaneObservation.VY, theirs.seenVy, opponentSeen, ours.seenVy, ownSeen);
-    }
+    int count = needsVelocity() ? LaneObservation.READ : LaneObservation.VX;
+    for (int what = 0; what < count; what++)
+      observation.see(what, theirs.seen[what], opponentSeen, ours.seen[what], ownSeen);
     Arrays.fill(observation.elapsed, times[number]);
     if (policy.needsAges()) {
       Arrays.fill(observation.ownAge, times[number + 1]);
@@ -137,8 +129,8 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
     observation.seeFromOwn(LaneObservation.X, eye.northM());
     observation.seeFromOwn(LaneObservation.Y, eye.eastM());
     if (needsVelocity()) {
-      observation.see(LaneObservation.VX, eye.northMps(), 0, vehicles.seenVx, ownSeen);
-      observation.see(LaneObservation.VY, eye.eastMps(), 0, vehicles.seenVy, ownSeen);
+      observation.see(LaneObservation.VX, eye.northMps(), 0, vehicles.seen[LaneObservation.VX], ownSeen);
+      observation.see(LaneObservation.VY, eye.eastMps(), 0, vehicles.seen[LaneObservation.VY], ownSeen);
     }
     Arrays.fill(observation.elapsed, times[number]);
     Arrays.fill(observation.ownAge, times[number + 1]);

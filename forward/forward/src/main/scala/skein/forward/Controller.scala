@@ -10,9 +10,9 @@ import skein.units.{Instant, Metres, MetresPerSecond, Radians, Span}
   * @see `skein.loop.TeamView`, which the live loops hold
   */
 private[skein] final class RolloutView(world: RolloutWorld) extends Grounds:
-  private val count               = world.count
-  private val keepsAll            = world.keepsKinematics
-  val x, y, vx, vy: Array[Double] = Array.ofDim[Double](count)
+  private val count       = world.count
+  private val keepsAll    = world.keepsKinematics
+  val x, y: Array[Double] = Array.ofDim[Double](count)
 
   /** Last heading sent to each vehicle, rad. */
   val sent: Array[Double] = Array.ofDim[Double](count)
@@ -35,7 +35,6 @@ private[skein] final class RolloutView(world: RolloutWorld) extends Grounds:
   def copyFrom(other: RolloutView): Unit =
     for vehicle <- 0 until count do
       x(vehicle) = other.x(vehicle); y(vehicle) = other.y(vehicle)
-      vx(vehicle) = other.vx(vehicle); vy(vehicle) = other.vy(vehicle)
       sent(vehicle) = other.sent(vehicle); sentDecision(vehicle) = other.sentDecision(vehicle)
       step(vehicle) = other.step(vehicle); reading(vehicle) = other.reading(vehicle)
       validAtNs(vehicle) = other.validAtNs(vehicle)
@@ -45,7 +44,6 @@ private[skein] final class RolloutView(world: RolloutWorld) extends Grounds:
   def take(vehicle: Int, question: Int): Unit =
     val slot = world.slot(vehicle, question)
     x(vehicle) = world.x(slot); y(vehicle) = world.y(slot)
-    vx(vehicle) = world.vx(slot); vy(vehicle) = world.vy(slot)
     if keepsAll then kinematics(vehicle) = world.seen(vehicle, question)
     step(vehicle) = world.stepOf(vehicle, question)
     reading(vehicle) = question
@@ -227,7 +225,6 @@ private[skein] final class Controller(
       val kinematics = estimates(vehicle).kinematics
       observation.kinematics(vehicle) = kinematics
       observation.x(vehicle) = kinematics.positionNed.x; observation.y(vehicle) = kinematics.positionNed.y
-      observation.vx(vehicle) = kinematics.velocityNed.x; observation.vy(vehicle) = kinematics.velocityNed.y
 
   /** Records a decision as sent, although no message was sent. */
   def sentNow(): Unit =

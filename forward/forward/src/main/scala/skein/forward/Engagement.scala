@@ -28,17 +28,11 @@ final case class Engagement(
     s"expected 1 to ${Engagement.Most} agents, got ${agents.size}"
   )
 
-  val evaders: Vector[Int]  = roles.indices.filter(roles(_) == Role.Evader).toVector
-  val pursuers: Vector[Int] = roles.indices.filter(roles(_) == Role.Pursuer).toVector
-  private val bothSides     = evaders.nonEmpty && pursuers.nonEmpty
-  private val inSides       = evaders.size + pursuers.size
+  private val count = Seq(Role.Evader, Role.Pursuer).map(role => roles.count(_ == role))
   require(
-    inSides == 0 || bothSides && inSides == agents.size,
+    count.sum == 0 || !count.contains(0) && count.sum == agents.size,
     s"expected pursuers and evaders, or neither, got ${roles.mkString(", ")}"
   )
-
-  /** Indices of the agents whose outcome counts: the evaders, or all agents of a team without sides. */
-  val judged: Vector[Int] = if bothSides then evaders else agents.indices.toVector
 
   lazy val isTraced: Boolean =
     agents.indices.forall(self => Level.formula(agents(self).policy, self, assignment, false).isRight)
@@ -59,11 +53,6 @@ final case class Engagement(
     .filter(agents(_).kind != VehicleKind.Car)
     .flatMap(self => Level.refusal(agents(self).policy, self, assignment, agents(self).altitudeDownM))
     .nextOption()
-
-  /** Indices of the agents whose distance to an agent counts: the pursuers, or, in a team without sides, all
-    * other agents.
-    */
-  def against(one: Int): Vector[Int] = if bothSides then pursuers else judged.filter(_ != one)
 
 object Engagement:
   val Most = 64

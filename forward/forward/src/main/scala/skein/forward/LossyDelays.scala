@@ -2,7 +2,7 @@ package skein.forward
 
 import skein.signal.{Impairment, Retransmission}
 import skein.simd.WorldRandom
-import skein.units.Span
+import skein.units.{Span, eachBelow}
 
 /** A link that loses packets, as seen over TCP: a lost message is sent again after a time-out, which doubles
   * each time, and arrives later by the sum of these. A loss is never detected by later packets, because there
@@ -152,12 +152,10 @@ private[skein] final class LossTimes(
     calmFromNs = Long.MinValue
     calmUntilNs = Long.MaxValue
     val each = all(direction)
-    var i    = 0
-    while i < each.length do
+    eachBelow(each.length): i =>
       each(i).find(atNs)
       calmFromNs = calmFromNs.max(each(i).endedNs)
       calmUntilNs = calmUntilNs.min(each(i).beginsNs)
-      i += 1
     calmUntilNs <= atNs
 
 /** Stretches of time in which everything is lost, with exponentially distributed times between them.

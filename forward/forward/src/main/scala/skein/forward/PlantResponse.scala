@@ -1,6 +1,5 @@
 package skein.forward
 
-import skein.policy.Action
 import skein.signal.Kinematics
 import skein.vehicle.{ConstantVelocity, ObservedPlant, Plant, PlantFlight, PlantModel, VehicleModel}
 
@@ -20,33 +19,23 @@ final case class PlantResponse(plant: Plant[?]) extends VelocityResponse:
     case observed: ObservedPlant[?] => PlantModel(observed)
     case _                          => ConstantVelocity
 
-private[skein] final class PlantVehicle[S](plant: Plant[S]) extends Vehicle:
-  private val coming               = DeadTime(plant.deadTimeS)
-  private val flight               = PlantFlight(plant)
-  private var reading              = flight.reading
-  private var nowS                 = 0.0
-  private var startX, startY, down = 0.0
-  private var isCommanded          = false
+private[skein] final class PlantVehicle[S](plant: Plant[S]) extends DelayedVehicle(plant.deadTimeS):
+  private val flight  = PlantFlight(plant)
+  private var reading = flight.reading
+  private var down    = 0.0
 
-  def start(x: Double, y: Double, z: Double): Unit =
-    startX = x; startY = y; down = z
+  protected def rest(downM: Double): Unit =
+    down = downM
     reading = plant.read(plant.initial)
-    nowS = 0; isCommanded = false
-    coming.clear()
 
-  def act(action: Action): Unit = action.byVelocity match
-    case Action.Velocity(velocity, _)         => coming.put(nowS, velocity.x, velocity.y)
-    case Action.VelocityAt(north, east, _, _) => coming.put(nowS, north, east)
-    case _                                    => coming.put(nowS, 0, 0)
+  protected def take(command: DelayedVehicle.Coming, isFirst: Boolean): Unit =
+    import command.{atS, eastMps, northMps}
+    if isFirst then flight.start(atS, plant.initial, northMps, eastMps)
+    else flight.act(atS, northMps, eastMps)
 
-  def advance(timeS: Double): Unit =
-    coming.until(timeS): (atS, vx, vy, _, _) =>
-      if isCommanded then flight.act(atS, vx, vy) else flight.start(atS, plant.initial, vx, vy)
-      isCommanded = true
-    if isCommanded then
-      flight.advance(timeS)
-      reading = flight.reading
-    nowS = timeS
+  protected def fly(timeS: Double): Unit =
+    flight.advance(timeS)
+    reading = flight.reading
 
   def x: Double  = startX + reading.northM
   def y: Double  = startY + reading.eastM

@@ -3,7 +3,7 @@ package skein.forward
 import skein.policy.{Action, ActionGuidance, OnWire}
 import skein.port.Moves
 import skein.units.{Quaternion, Vector3}
-import skein.vehicle.{Environment, Guidance, Quadrotor, QuadrotorState, Rotorcraft, Setpoint}
+import skein.vehicle.{Environment, Guidance, Quadrotor, Rotorcraft, Setpoint}
 
 /** AirSim's quadrotor as in the built-in simulator (`skein.simulator.SimulatedMultirotor`), with all actions.
   * Physics advances in whole steps, counted from the time at which the vehicle was placed at its start; a
@@ -21,7 +21,6 @@ private[skein] final class QuadrotorResponse(val quadrotor: Quadrotor, val hover
 
 private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Long) extends SteppedVehicle:
   private val stepNs             = Nanos.of(quadrotor.stepS)
-  private val state              = QuadrotorState()
   private var guidance: Guidance = Setpoint.Disarmed
   private var setpoint: Setpoint = Setpoint.Disarmed
   private var renewedAt          = 0L
@@ -59,17 +58,3 @@ private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Lo
       steppedTo += stepNs
 
   protected def sinceStepS: Double = (now - steppedTo) * 1e-9
-
-  protected def stepX: Double  = state.x
-  protected def stepY: Double  = state.y
-  protected def stepZ: Double  = state.z
-  protected def stepVx: Double = state.vx
-  protected def stepVy: Double = state.vy
-  protected def stepVz: Double = state.vz
-  protected def stepAx: Double = state.ax
-  protected def stepAy: Double = state.ay
-  protected def stepAz: Double = state.az
-
-  protected def orientation: Quaternion =
-    Quaternion(state.qw.toFloat, state.qx.toFloat, state.qy.toFloat, state.qz.toFloat)
-  protected def angularVelocityFrd: Vector3 = Vector3(state.wx.toFloat, state.wy.toFloat, state.wz.toFloat)

@@ -40,13 +40,15 @@ final class Rollout private[skein] (
   )
   for agent <- trackers.indices do world.views(agent) = trackers(agent)
 
-  private val loop     = LoopRuns.of(timing, world)
+  private val loop = timing match
+    case paused: LoopTiming.Paused         => PausedRun(paused, world)
+    case sequential: LoopTiming.Sequential => SequentialRun(sequential, world)
+    case futures: LoopTiming.Futures       => FuturesRun(futures, world)
+    case stream: LoopTiming.Stream         => StreamRun(stream, world)
+    case predictive: LoopTiming.Predictive => PredictiveRun(predictive, world)
   private val periodNs = Nanos.of(timing.periodS)
   private val scores   = (engagement.durationS / timing.periodS).round.toInt
-  private val judged   = engagement.judged.toArray
-  private val against  = judged.map(engagement.against(_).toArray)
-  private val last10s  = Rollout.last10sFromS(engagement.durationS, timing.periodS)
-  private var tallies  = judged.map(_ => Score())
+  private var scored   = 0
 
   /** Simulates one episode.
     *
@@ -55,21 +57,18 @@ final class Rollout private[skein] (
     */
   def fly(
       worldKey: Int,
-      captureRadiusM: Double = 0.0,
-      observer: LoopObserver = LoopObserver.Nobody,
-      sensorSeed: Option[Long] = None
-  ): EpisodeOutcome =
-    start(worldKey, captureRadiusM, observer, sensorSeed)
-    while !isOver do handle(world.next())
-    outcome
-
-  private[skein] def start(
-      worldKey: Int,
-      captureRadiusM: Double,
       observer: LoopObserver = LoopObserver.Nobody,
       sensorSeed: Option[Long] = None
   ): Unit =
-    tallies = judged.map(_ => Score(captureRadiusM, last10s))
+    start(worldKey, observer, sensorSeed)
+    while !isOver do handle(world.next())
+
+  private[skein] def start(
+      worldKey: Int,
+      observer: LoopObserver = LoopObserver.Nobody,
+      sensorSeed: Option[Long] = None
+  ): Unit =
+    scored = 0
     world.start(worldKey, observer, sensorSeed = sensorSeed)
     for tracker <- trackers; eye <- tracker do eye.start(worldKey)
     world.schedule(periodNs, ScoreNow, 0, 1)
@@ -87,36 +86,10 @@ final class Rollout private[skein] (
   /** Whether the episode ended before its duration, because the engagement was over. */
   private[skein] def hasEnded: Boolean = world.isOver
 
-  private def isOver: Boolean = tallies(0).count >= scores || world.isOver
+  private def isOver: Boolean = scored >= scores || world.isOver
 
-  /** The outcome of a team: the minimum distance of any evader, the mean over the evaders of each mean, and
-    * the time of the last capture; distances are to the nearest pursuer, efforts are summed over a side. In a
-    * team without sides all vehicles count, with the distance to the nearest other, and the effort is that of
-    * the evaders.
-    */
-  private[skein] def outcome: EpisodeOutcome =
-    val each    = evaderOutcomes
-    val nearest = each.minBy(_.minDistanceM)
-    EpisodeOutcome(
-      nearest.minDistanceM,
-      nearest.minDistanceAtS,
-      each.map(_.meanDistanceM).sum / each.size,
-      each.map(_.meanLast10sM).sum / each.size,
-      each.map(_.captureS).max,
-      engagement.pursuers.map(loop.controllers(_).effortRad).sum,
-      judged.map(loop.controllers(_).effortRad).sum,
-      loop.controllers.map(_.decisions).sum,
-      loop.controllers.map(_.skipped).sum
-    )
-
-  /** Control effort of a vehicle in the last episode: the sum of all changes of its commanded heading, rad.
-    */
-  private[skein] def effortRad(vehicle: Int): Double = loop.controllers(vehicle).effortRad
-
-  /** The outcomes of the last episode, one for each evader in the engagement's order; in a team without
-    * sides, one for each vehicle.
-    */
-  def evaderOutcomes: Vector[EvaderOutcome] = tallies.map(_.outcome).toVector
+  /** The vehicles' controllers, as the last episode left them. */
+  private[skein] def controllers: Array[Controller] = loop.controllers
 
   private def handle(event: Long): Unit =
     val vehicle = vehicleOf(event)
@@ -137,13 +110,7 @@ final class Rollout private[skein] (
     for index <- world.vehicles.indices do
       val vehicle = world.vehicles(index)
       world.observer.scored(world.nowS, index, vehicle.x, vehicle.y, vehicle.z)
-    for index <- judged.indices do
-      val evader  = world.vehicles(judged(index))
-      var nearest = Double.PositiveInfinity
-      for agent <- against(index) do
-        val pursuer = world.vehicles(agent)
-        nearest = math.min(nearest, StrictMath.hypot(evader.x - pursuer.x, evader.y - pursuer.y))
-      tallies(index).add(world.nowS, nearest)
+    scored += 1
     world.schedule((number + 1) * periodNs, ScoreNow, 0, number + 1)
 
 object Rollout:
@@ -153,24 +120,3 @@ object Rollout:
     (math.floor((durationS - 10 + 1e-9) / periodS) + 1) * periodS
 
   private[skein] val Never: Long = Long.MaxValue
-
-/** Accumulates the distances of an episode into its outcome. */
-private[skein] final class Score(captureRadiusM: Double = 0.0, last10sFromS: Double = 0.0):
-  var count                = 0
-  private var least        = Double.PositiveInfinity
-  private var leastAt      = 0.0
-  private var sum, lastSum = 0.0
-  private var lastCount    = 0
-  private var captureS     = Double.PositiveInfinity
-
-  def add(timeS: Double, distanceM: Double): Unit =
-    count += 1
-    sum += distanceM
-    if distanceM < least then
-      least = distanceM; leastAt = timeS
-    if distanceM <= captureRadiusM && captureS.isInfinite then captureS = timeS
-    if timeS > last10sFromS - 1e-6 then
-      lastSum += distanceM
-      lastCount += 1
-
-  def outcome: EvaderOutcome = EvaderOutcome(least, leastAt, sum / count, lastSum / lastCount, captureS)

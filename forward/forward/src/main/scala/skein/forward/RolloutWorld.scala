@@ -44,7 +44,7 @@ private[skein] final class RolloutWorld(
   private var watching: LoopObserver = LoopObserver.Nobody
 
   // Readings by vehicle and request, see `slot`: what they showed, and when.
-  val x, y, vx, vy                          = Array.ofDim[Double](count * ring)
+  val x, y                                  = Array.ofDim[Double](count * ring)
   val sentAtNs, validAtNs, receivedAtNs     = Array.ofDim[Long](count * ring)
   private val kinematics: Array[Kinematics] =
     Array.ofDim[Kinematics](if keepsKinematics then count * ring else 0)
@@ -175,12 +175,11 @@ private[skein] final class RolloutWorld(
     body.advance(nowS)
     sensors(vehicle) match
       case None =>
-        x(at) = body.seenX; y(at) = body.seenY; vx(at) = body.seenVx; vy(at) = body.seenVy
+        x(at) = body.seenX; y(at) = body.seenY
         if keepsKinematics then kinematics(at) = body.seen
       case Some(sensor) =>
         val sensed = sensor.read(body.seen, Span.ofNanos(time))
         x(at) = sensed.positionNed.x; y(at) = sensed.positionNed.y
-        vx(at) = sensed.velocityNed.x; vy(at) = sensed.velocityNed.y
         if keepsKinematics then kinematics(at) = sensed
     validAtNs(at) = time
     observer.read(vehicle, number, time, x(at), y(at), body.seenZ)

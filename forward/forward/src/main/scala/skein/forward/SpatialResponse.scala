@@ -37,35 +37,22 @@ final case class SpatialResponse(plant: SpatialPlant[?], model: Option[VehicleMo
     case _: (Action.Velocity | Action.VelocityAt | Action.Along | Action.Turn) | Action.Hover => true
     case _: (Action.Position | Action.Attitude) | Action.Land                                 => false
 
-private final class SpatialVehicle[S](plant: SpatialPlant[S]) extends Vehicle:
-  private val coming         = DeadTime(plant.deadTimeS)
-  private val flight         = SpatialFlight(plant)
-  private var startX, startY = 0.0
-  private var nowS           = 0.0
-  private var isCommanded    = false
-  private var reading        = flight.reading
+private final class SpatialVehicle[S](plant: SpatialPlant[S]) extends DelayedVehicle(plant.deadTimeS):
+  private val flight  = SpatialFlight(plant)
+  private var reading = flight.reading
 
-  def start(x: Double, y: Double, z: Double): Unit =
-    startX = x; startY = y
-    flight.rest(z)
+  protected def rest(downM: Double): Unit =
+    flight.rest(downM)
     reading = flight.reading
-    nowS = 0; isCommanded = false
-    coming.clear()
 
-  def act(action: Action): Unit = action.byVelocity match
-    case Action.Velocity(velocity, _)            => coming.put(nowS, velocity.x, velocity.y, velocity.z, 0)
-    case Action.VelocityAt(north, east, down, _) => coming.put(nowS, north, east, down.value, 1)
-    case _                                       => coming.put(nowS, 0, 0, 0, 0)
+  protected def take(command: DelayedVehicle.Coming, isFirst: Boolean): Unit =
+    import command.*
+    if !isFirst then flight.advance(atS)
+    flight.act(atS, northMps, eastMps, third, holds)
 
-  def advance(timeS: Double): Unit =
-    coming.until(timeS): (atS, vx, vy, third, holds) =>
-      if isCommanded then flight.advance(atS)
-      flight.act(atS, vx, vy, third, holds)
-      isCommanded = true
-    if isCommanded then
-      flight.advance(timeS)
-      reading = flight.reading
-    nowS = timeS
+  protected def fly(timeS: Double): Unit =
+    flight.advance(timeS)
+    reading = flight.reading
 
   def x: Double  = startX + reading.northM
   def y: Double  = startY + reading.eastM

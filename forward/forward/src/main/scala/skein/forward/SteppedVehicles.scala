@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.units.{Quaternion, Vector3}
+import skein.vehicle.QuadrotorState
 
 /** A response whose vehicles can be stepped together in many worlds, in equal whole steps, faster than one by
   * one and with equal results.
@@ -29,18 +29,5 @@ trait SteppedVehicles:
 
   def step(): Unit
 
-  def x(place: Int): Double
-  def y(place: Int): Double
-  def z(place: Int): Double
-
-  def vx(place: Int): Double
-  def vy(place: Int): Double
-  def vz(place: Int): Double
-
-  def ax(place: Int): Double
-  def ay(place: Int): Double
-  def az(place: Int): Double
-
-  def orientation(place: Int): Quaternion
-
-  def angularVelocityFrd(place: Int): Vector3
+  /** Copies at least a vehicle's motion at the end of the last step. */
+  def read(place: Int, into: QuadrotorState): Unit

@@ -2,6 +2,7 @@ package skein.identify
 
 import java.util.stream.IntStream
 import scala.annotation.tailrec
+import skein.units.eachBelow
 
 /** Minimises a sum of squares within bounds by Levenberg and Marquardt's method, with a Jacobian by central
   * differences.
@@ -101,8 +102,6 @@ private[identify] object LeastSquares:
 
   def dot(a: Array[Double], b: Array[Double]): Double =
     var sum = 0.0
-    var i   = 0
-    while i < a.length do
+    eachBelow(a.length): i =>
       sum += a(i) * b(i)
-      i += 1
     sum

@@ -21,23 +21,6 @@ trait Accelerator:
       episodes: Episodes
   ): Either[String, AcceleratedTeams]
 
-private[lanes] object Accelerator:
-  /** The engine that replaces SIMD, or why it does not; None if no accelerator was requested.
-    *
-    * @param flights the teams that the accelerator prepared, or why it could not
-    * @param together whether the candidates share episodes
-    */
-  def engine(
-      accelerator: Option[Accelerator],
-      flights: Option[Either[String, Any]],
-      together: Boolean
-  ): Option[Either[String, Engine]] =
-    for
-      by    <- accelerator
-      offer <- flights
-    yield offer.flatMap: _ =>
-      Either.cond(together, by.engine, "the GPU flies candidates that share episodes")
-
 /** Teams prepared for an accelerator. Not thread-safe: one call at a time. */
 private[lanes] trait AcceleratedTeams:
   /** Simulates the candidates that are formulas, unless it is cancelled.
@@ -59,17 +42,3 @@ private[lanes] trait AcceleratedTeams:
   * @param left the other worlds, whose candidates are not formulas
   */
 private[lanes] final case class Accelerated(flown: Int, left: Array[Int])
-
-private[lanes] object Accelerated:
-  /** Lets an accelerator simulate worlds before the processors do. It simulates none unless the candidates
-    * share their episodes.
-    *
-    * @param flights the teams that the accelerator prepared, or why it could not
-    */
-  def first[F](flights: Option[Either[String, F]], worlds: Worlds)(
-      fly: F => Accelerated
-  ): Accelerated =
-    flights
-      .flatMap(_.toOption)
-      .filter(_ => worlds.shareEpisodes && worlds.episodesOfEach > 0)
-      .fold(Accelerated(0, Array.range(0, worlds.size)))(fly)

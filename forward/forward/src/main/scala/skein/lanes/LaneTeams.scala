@@ -5,6 +5,7 @@ import skein.lanes.loop.{LaneAgents, LoopKernel, LoopLanes}
 import skein.lanes.policy.{OpponentLanes, TeamLanes}
 import skein.lanes.score.Scoreboard
 import skein.lanes.timetable.{TimetableAgents, TimetableKernel, Timetables}
+import skein.units.eachBelow
 
 /** Teams of one form in many worlds, with their scores. Mutable. */
 private[lanes] abstract class LaneTeams(form: TeamForm):
@@ -18,12 +19,10 @@ private[lanes] abstract class LaneTeams(form: TeamForm):
     val before = held(world)
     if team ne before then
       held(world) = team
-      var self = 0
-      while self < members.length do
+      eachBelow(members.length): self =>
         val numbers = team.numbers(self)
         // Candidates often have the identical object as their opponent.
         if before == null || (numbers ne before.numbers(self)) then members(self).take(world, numbers)
-        self += 1
       if form.hasParameters then scores.take(world, team.ofScores)
 
   /** Simulates one episode in each world.

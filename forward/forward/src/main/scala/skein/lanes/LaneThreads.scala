@@ -18,7 +18,7 @@ private[lanes] object LaneThreads:
     */
   def run[W](
       workers: Vector[W],
-      batches: WorldBatches,
+      batches: Array[Array[Int]],
       isCancelled: () => Boolean,
       onProgress: Int => Unit = _ => ()
   )(work: (W, Array[Int]) => Unit): Int =
@@ -31,8 +31,8 @@ private[lanes] object LaneThreads:
       var going = true
       while going do
         // Every batch that was taken is completed.
-        val number = if failure.get == null && !isCancelled() then next.getAndIncrement() else batches.count
-        if number >= batches.count then going = false
+        val number = if failure.get == null && !isCancelled() then next.getAndIncrement() else batches.length
+        if number >= batches.length then going = false
         else
           val numbers = batches(number)
           work(worker, numbers)
@@ -41,7 +41,7 @@ private[lanes] object LaneThreads:
             onProgress(done)
 
     val flying = workers
-      .take(batches.count)
+      .take(batches.length)
       .map: worker =>
         val thread = Thread(() =>
           try handle(worker)

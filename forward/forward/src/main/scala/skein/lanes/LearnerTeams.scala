@@ -3,9 +3,10 @@ package skein.lanes
 import skein.forward.{Delays, LoopTiming, VelocityResponse}
 import skein.lanes.policy.OpponentLanes
 import skein.lanes.score.{OfMoment, Scoreboard}
-import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, Timetables}
+import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, Timetables}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
+import skein.units.eachBelow
 
 /** Teams with learners in many worlds by one timetable, with the results of [[TeamBatch]]. Allocates nothing
   * after construction, unless a timetable needs more slots than any before.
@@ -19,14 +20,13 @@ final class LearnerTeams private[lanes] (
     learners: Array[Int],
     worlds: Int,
     timetableOf: Long => Timetable
-) extends LearnerWorlds,
-      TimetableScores:
+) extends LearnerWorlds:
   import LearnerTeams.ToleranceS
   import TimetableKernel.{DECIDE, END, WORLDS}
 
   private val members = LaneTeams.inEpisode(form, team.engagement.agents)
   private val scores  = Scoreboard(form.scores, form.altitudesDownM)
-  private val kernel  = TimetableKernel(members.map(identity[TimetableAgents]), this)
+  private val kernel  = TimetableKernel(members.map(identity[TimetableAgents]), scores)
   private val passing =
     team.quantities.indices.filter(team.quantities(_).reduction != OfMoment.Newest).toArray
   private val isOfTwo = form.policies.isInstanceOf[OpponentLanes]
@@ -36,7 +36,6 @@ final class LearnerTeams private[lanes] (
 
   private var timetable: Timetable   = null
   private var operations: Array[Int] = null
-  private var untilS                 = 0f
 
   /** Index of the timetable's next operation, and end of the decisions that are due. */
   private var next, dueUntil = 0
@@ -52,7 +51,7 @@ final class LearnerTeams private[lanes] (
   def start(draw: Long, untilS: Float): Unit =
     timetable = timetableOf(draw)
     operations = timetable.operations
-    this.untilS = untilS
+    scores.untilS = untilS + ToleranceS
     next = 0
     dueUntil = 0
     if form.isSensed then
@@ -132,31 +131,12 @@ final class LearnerTeams private[lanes] (
   def soFar(number: Int, into: Array[Float]): Unit = scores.soFar(number, into)
 
   def forgetScores(): Unit =
-    var i = 0
-    while i < passing.length do
+    eachBelow(passing.length): i =>
       scores.forget(passing(i))
-      i += 1
 
   def forgetScores(world: Int): Unit =
     for number <- passing do scores.forgetIn(world, number)
     scores.goOn(world)
-
-  def start(worlds: Int): Unit = scores.start(worlds)
-
-  def score(all: Array[TimetableAgents], views: Array[Int], view: Int, timeS: Float): Unit =
-    if timeS <= untilS + ToleranceS then scores.score(all, views, view, timeS)
-
-  override def needsVelocity: Boolean = scores.needsVelocity
-
-  override def end(
-      all: Array[TimetableAgents],
-      views: Array[Int],
-      view: Int,
-      timeS: Float,
-      sinceS: Float,
-      agesS: Array[Float],
-      ages: Int
-  ): Unit = scores.end(all, views, view, timeS, sinceS, agesS, ages)
 
 object LearnerTeams:
   private val ToleranceS = 1e-4f

@@ -2,8 +2,8 @@ package skein.lanes
 
 import skein.forward.RolloutAgent
 import skein.lanes.loop.{LaneAgents, LoopEye, LoopLanes}
-import skein.lanes.policy.{CameraTrackerLanes, LaneObservation, LanePolicy, OpponentLanes}
-import skein.lanes.timetable.{TimetableAgents, TimetableEye}
+import skein.lanes.policy.{CameraTrackerLanes, LanePolicy, OpponentLanes}
+import skein.lanes.timetable.TimetableEye
 
 /** Makes the vehicles of two opponents in many worlds. */
 private[lanes] object Opponents:
@@ -24,7 +24,7 @@ private[lanes] object Opponents:
       eyes: Map[Int, TimetableEye]
   ): Array[OpponentAgents] = Array.tabulate(2): self =>
     val eye = eyes.getOrElse(self, null)
-    OpponentAgents(self, agents(self), models(self), policies(self), newEffort, LaneObservation(), eye)
+    OpponentAgents(self, agents(self), models(self), policies(self), eye)
 
   def eyesOf(two: OpponentLanes): Map[Int, TimetableEye] =
     two.cameras.map((self, forms) => self -> TimetableEye(forms, two.agents(self), two.agents(1 - self)))
@@ -43,11 +43,9 @@ private[lanes] object Opponents:
       newEye: NewEye = LoopEye(_, _, _, _, _, _)
   ): (Array[LoopOpponentAgents], Option[LoopEye]) =
     val two = Array.tabulate(2): self =>
-      LoopOpponentAgents(self, agents(self), loop, models(self), policies(self), newEffort)
+      LoopOpponentAgents(self, agents(self), loop, models(self), policies(self))
     val eye = cameras.headOption.map: (self, forms) =>
       val seen = newEye(forms, agents(self), agents(1 - self), loop, two(self), two(1 - self))
       two(self).seeBy(seen)
       seen
     (two, eye)
-
-  private def newEffort = Array.ofDim[Float](TimetableAgents.WORLDS)

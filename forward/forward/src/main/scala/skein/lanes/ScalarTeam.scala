@@ -26,14 +26,14 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
       last = asked
       rollout = Rollout(candidate.engagement, timing, link, model)
     tallies = candidate.quantities.map(Tally(_))
-    rollout.start(key, 0, Judging(candidate))
+    rollout.start(key, Judging(candidate))
     rollout
 
   /** The finished episode's scores, in their order. */
   private[lanes] def values: Vector[Double] =
     val next = tallies.iterator
     last._1.judged.map:
-      case Effort(vehicle) => rollout.effortRad(vehicle)
+      case Effort(vehicle) => rollout.controllers(vehicle).effortRad
       case _: Judged       => next.next().value
 
   /** Of a flight that ends before a score begins, all of it counts. */

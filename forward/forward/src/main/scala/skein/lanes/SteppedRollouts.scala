@@ -4,7 +4,7 @@ import skein.forward.*
 import skein.lanes.plant.LaneQuadrotors
 import skein.policy.Action
 import skein.simd.LaneMath
-import skein.units.{Quaternion, Vector3}
+import skein.units.eachBelow
 
 /** Steps the vehicles of many worlds together ([[skein.forward.SteppedVehicles]]), while each world has its
   * own [[Rollout]]. Before each step of physics, every rollout handles the events since the previous step. A
@@ -49,11 +49,9 @@ private final class SteppedRollouts private (
       if Thread.interrupted() then throw InterruptedException()
       val until = steppedTo + stepNs
       flying = 0
-      var world = 0
-      while world < count do
+      eachBelow(count): world =>
         if nextNs(world) < until then nextNs(world) = rollouts(world).flyUntil(until)
         if nextNs(world) != Rollout.Never then flying += 1
-        world += 1
       vehicles.step()
       steppedTo = until
 
@@ -82,41 +80,22 @@ private final class SteppedRollouts private (
         vehicles.command(place, north.toFloat, east.toFloat, down)
       case other => throw UnsupportedOperationException(s"this vehicle does not perform $other")
 
-    def advance(timeS: Double): Unit = sinceStepS = (Nanos.of(timeS) - steppedTo) * 1e-9
-
-    protected def stepX: Double               = vehicles.x(place)
-    protected def stepY: Double               = vehicles.y(place)
-    protected def stepZ: Double               = vehicles.z(place)
-    protected def stepVx: Double              = vehicles.vx(place)
-    protected def stepVy: Double              = vehicles.vy(place)
-    protected def stepVz: Double              = vehicles.vz(place)
-    protected def stepAx: Double              = vehicles.ax(place)
-    protected def stepAy: Double              = vehicles.ay(place)
-    protected def stepAz: Double              = vehicles.az(place)
-    protected def orientation: Quaternion     = vehicles.orientation(place)
-    protected def angularVelocityFrd: Vector3 = vehicles.angularVelocityFrd(place)
+    def advance(timeS: Double): Unit =
+      vehicles.read(place, state)
+      sinceStepS = (Nanos.of(timeS) - steppedTo) * 1e-9
 
 private object SteppedRollouts:
   /** Creates rollouts for these vehicles; None if they cannot be stepped together. */
   def of(model: VelocityResponse, vehicles: Vector[RolloutAgent]): Option[SteppedRollouts] =
-    val each = vehicles.size
+    val each   = vehicles.size
+    val worlds = worldsOf(model, each)
     model.body match
       case stepped: SteppedResponse =>
-        val worlds = worldsOf(model, each)
-        val flown  = stepped.together(worlds * each)
+        val flown = stepped.together(worlds * each)
         Some(new SteppedRollouts(model, stepped.stepS, stepped.hoveredS, worlds, each, flown))
-      case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
-        val worlds = worldsOf(model, each)
-        Some(
-          new SteppedRollouts(
-            model,
-            quadrotor.quadrotor.stepS,
-            quadrotor.hoveredS,
-            worlds,
-            each,
-            LaneQuadrotors.of(quadrotor.quadrotor).fold(sys.error, identity)
-          )
-        )
+      case of: QuadrotorResponse if fliesByLanes(of, vehicles) =>
+        val flown = LaneQuadrotors.of(of.quadrotor).fold(sys.error, identity)
+        Some(new SteppedRollouts(model, of.quadrotor.stepS, of.hoveredS, worlds, each, flown))
       case _ => None
 
   /** The engine for such vehicles; None if they cannot be stepped together. */

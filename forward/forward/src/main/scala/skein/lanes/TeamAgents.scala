@@ -5,6 +5,7 @@ import skein.forward.RolloutAgent
 import skein.lanes.loop.{LaneAgents, LaneOffers, LaneVectors, LoopLanes}
 import skein.lanes.policy.{Directions, VehicleNumbers}
 import skein.lanes.timetable.{Timetable, TimetableAgents}
+import skein.units.eachBelow
 
 /** One vehicle of a team, simulated in many worlds. */
 private[lanes] trait TeamMember:
@@ -130,15 +131,13 @@ private[lanes] class TeamAgents(
 
   /** Copies further inputs of a decision from the timetable. */
   private def learn(all: Array[TimetableAgents], decision: Int): Unit =
-    val more    = timetable.more
-    var vehicle = 0
-    while vehicle < all.length do
+    val more = timetable.more
+    eachBelow(all.length): vehicle =>
       val ages = decisions.agesS(vehicle)
       if ages != null then Arrays.fill(ages, more.ageS(decision, vehicle))
       if decisions.asksHeading(vehicle) then
         val other = all(vehicle).asInstanceOf[TeamAgents]
         decisions.knows(vehicle, other.told, more.heading(decision, vehicle) * WORLDS)
-      vehicle += 1
     if decisions.actsInS != null then Arrays.fill(decisions.actsInS, more.actsInS(decision))
     if decisions.timeS != null then Arrays.fill(decisions.timeS, more.timeS(decision))
 
@@ -205,8 +204,7 @@ private[lanes] final class LoopTeamAgents private (
       vectors: LaneVectors,
       readAt: Array[Array[Int]]
   ): Unit =
-    var vehicle = 0
-    while vehicle < all.length do
+    eachBelow(all.length): vehicle =>
       val ages = decisions.agesS(vehicle)
       if ages != null then age(vehicle, readAt, ages)
       if decisions.asksHeading(vehicle) then
@@ -216,7 +214,6 @@ private[lanes] final class LoopTeamAgents private (
         else
           other.knownAt(vectors, offers.joinedAt, other.told, other.toldBefore, known)
           decisions.knows(vehicle, known, 0)
-      vehicle += 1
     if decisions.actsInS != null && forecast != null then
       System.arraycopy(forecast.actsS, 0, decisions.actsInS, 0, decisions.actsInS.length)
     if decisions.timeS != null then

@@ -72,15 +72,17 @@ final class TeamBatch(
     def together(form: TeamForm) = shareEpisodes || episodes.areOne(form)
     def refused(by: Delays)      = form.toOption.flatMap(form => refusal(form, together(form), by))
     val worlds                   = if form.exists(together) then "candidates of an episode" else "worlds"
-    val byGpu                    = form.toOption.flatMap(_.refusedByGpu).map(Left(_))
     Engine.of(
       // A team that SIMD does not support over the fastest link, it does not support over any.
       form.flatMap(_ => refused(DelayTable.none).toLeft(s"${LaneMath.LANES} $worlds at a time")),
       links.map(refused),
       steppedOf(candidate.engagement),
-      accelerator.flatMap(_ => byGpu).orElse:
-        Accelerator.engine(accelerator, accelerated, form.exists(together))
-      ,
+      accelerator.zip(accelerated).map: (by, offer) =>
+        for
+          _ <- form.toOption.flatMap(_.refusedByGpu).toLeft(())
+          _ <- offer
+          _ <- Expect.that(form.exists(together))("the GPU flies candidates that share episodes")
+        yield by.engine,
       form.fold(_ => 1, _.policies.sideBySide)
     )
 
@@ -136,20 +138,30 @@ final class TeamBatch(
       last
     val judged   = if worlds.size == 0 then 0 else worlds.candidate(0).judged.size
     val outcomes = TeamOutcomes(Vector.fill(judged)(Array.ofDim[Float](worlds.size)))
-    val came     = Accelerated.first(accelerated, worlds):
-      _.fly(worlds, prepare, outcomes, onProgress, isCancelled)
+    val came     = accelerated
+      .flatMap(_.toOption)
+      .filter(_ => worlds.shareEpisodes && worlds.episodesOfEach > 0)
+      .fold(Accelerated(0, Array.range(0, worlds.size)))(
+        _.fly(worlds, prepare, outcomes, onProgress, isCancelled)
+      )
     val prepared = Array.ofDim[PreparedTeam](worlds.size)
     for world <- came.left do prepared(world) = prepare(world)
     val most    = came.left.headOption.fold(1)(world => batchOf(prepared(world)))
-    val batches =
-      if worlds.shareEpisodes then WorldBatches.byEpisode(worlds, came.left, most)
-      else WorldBatches.inOrder(came.left, most)
+    val groups  = if worlds.shareEpisodes then byEpisode(worlds, came.left) else Seq(came.left)
+    val batches = groups.iterator.flatMap(_.grouped(most)).toArray
     outcomes.flown = came.flown +
       LaneThreads.run(workers, batches, isCancelled, done => onProgress(came.flown + done)): (worker, some) =>
         worker.fly(worlds, prepared, some, outcomes)
     outcomes
 
   /** Number of worlds that a thread takes together, given one of them. */
+  /** Groups worlds that share one key and one link. */
+  private def byEpisode(worlds: TeamWorlds, numbers: Array[Int]): Iterable[Array[Int]] =
+    val groups = mutable.LinkedHashMap.empty[(Delays, Int), mutable.ArrayBuilder.ofInt]
+    for world <- numbers do
+      groups.getOrElseUpdate((worlds.link(world), worlds.key(world)), mutable.ArrayBuilder.ofInt()) += world
+    groups.values.map(_.result())
+
   private def batchOf(team: PreparedTeam): Int =
     if team.form != null then TimetableKernel.WORLDS
     else if team.isStepped then SteppedRollouts.worldsOf(model, team.vehicles.size)

@@ -3,6 +3,7 @@ package skein.lanes
 import skein.lanes.policy.{Directions, TeamLanes, VehicleNumbers}
 import skein.lanes.timetable.{TimetableAgents, ViewCall}
 import skein.simd.BoundFunction
+import skein.units.{eachBelow, eachFrom}
 
 /** The values that several vehicles of a team compute from one view, in many worlds. Mutable. */
 private[lanes] final class TeamViews(val lanes: TeamLanes):
@@ -116,10 +117,8 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
       if asksCos >= 0 then call.call.input(asksCos, cos, 0)
       if asksSin >= 0 then call.call.input(asksSin, sin, 0)
       if asksTime >= 0 then call.call.input(asksTime, elapsedS, 0)
-      var number = 0
-      while number < remembered do
+      eachBelow(remembered): number =>
         if asksMemory(number) >= 0 then call.call.input(asksMemory(number), memory, number * WORLDS)
-        number += 1
 
     def knows(vehicle: Int, headings: Directions, at: Int): Unit =
       if asksKnownCos(vehicle) >= 0 then call.call.input(asksKnownCos(vehicle), headings.cos, at)
@@ -181,19 +180,15 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
     if lanes.inSpace then
       call.output(4, into.third, at)
       call.output(5, into.holds, at)
-    var number = 0
-    while number < remembered do
+    eachBelow(remembered): number =>
       call.output(lanes.decided + number, newMemory, number * WORLDS)
-      number += 1
     call.apply()
 
   /** Computes the memory on which no decision depends. */
   def observe(elapsedS: Array[Float]): Unit =
     observing.look(elapsedS)
-    var number = remembered
-    while number < lanes.memories(self) do
+    eachFrom(remembered, lanes.memories(self)): number =>
       observing.call.call.output(number - remembered, newMemory, number * WORLDS)
-      number += 1
     observing.call.call.apply()
 
   /** Sets where another vehicle's known heading is stored. */
@@ -213,16 +208,12 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
 
   /** Makes the decisions the last commands in worlds whose time is earlier than `before`. */
   def commitBefore(times: Array[Int], before: Int): Unit =
-    var world = 0
-    while world < WORLDS do
+    eachBelow(WORLDS): world =>
       if times(world) < before then
         cos(world) = newCos(world)
         sin(world) = newSin(world)
-      world += 1
-    var number = 0
-    while number < memory.length do
+    eachBelow(memory.length): number =>
       if times(number % WORLDS) < before then memory(number) = newMemory(number)
-      number += 1
 
 private object TeamDecisions:
   private val Never = -1

@@ -5,6 +5,7 @@ import skein.lanes.TeamOutcomes
 import skein.lanes.score.{Effort, Judged}
 import skein.policy.Role
 import skein.scenario.{Measure, Scenario}
+import skein.units.eachBelow
 
 /** The objective of a search: a weighted sum of values of a flight, averaged over episodes.
   *
@@ -28,12 +29,10 @@ final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
     * @param outcomes the values of [[judged]]
     */
   def value(outcomes: TeamOutcomes, world: Int, durationS: Double): Double =
-    var sum    = 0.0
-    var number = 0
-    while number < terms.size do
+    var sum = 0.0
+    eachBelow(terms.size): number =>
       val (weight, term) = terms(number)
       sum += weight * term.value(outcomes.values(number)(world), durationS)
-      number += 1
     sum
 
   /** The objective as text, without the direction, as [[Objective.ofRole]] and the other methods read it. */

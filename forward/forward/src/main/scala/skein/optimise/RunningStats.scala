@@ -1,6 +1,7 @@
 package skein.optimise
 
 import skein.signal.StudentQuantile
+import skein.units.eachBelow
 
 /** Count and mean of values, and the sum of their squared deviations from the mean. */
 final case class RunningStats(count: Int, mean: Double, squares: Double):
@@ -44,15 +45,11 @@ object RunningStats:
   /** The statistics of `count` values, each computed from its index. */
   def of(count: Int)(value: Int => Double): RunningStats =
     var sum = 0.0
-    var i   = 0
-    while i < count do
+    eachBelow(count): i =>
       sum += value(i)
-      i += 1
     val mean    = if count == 0 then 0.0 else sum / count
     var squares = 0.0
-    i = 0
-    while i < count do
+    eachBelow(count): i =>
       val off = value(i) - mean
       squares += off * off
-      i += 1
     RunningStats(count, mean, squares)

@@ -32,11 +32,15 @@ final case class ScenarioTerm(measure: Measure) extends Term:
       case Window.Last(seconds)  => durationS - math.floor(seconds / periodS + 1e-9) * periodS
     Judged(by.quantity, by.reduction, fromS, periodS)
 
-  /** A time that is never reached counts as the episode's duration. */
   def value(computed: Float, durationS: Double): Double =
-    if measure.reduced.exists(_.reduction.mayBeNever) then computed.toDouble.min(durationS) else computed
+    ScenarioTerm.never(measure, durationS).fold(computed.toDouble)(computed.toDouble.min)
 
 object ScenarioTerm:
+  /** The value of a time that is never reached: the episode's duration; None if the measure is no such time.
+    */
+  def never(measure: Measure, durationS: Double): Option[Double] =
+    Option.when(measure.reduced.exists(_.reduction.mayBeNever))(durationS)
+
   def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
 
 /** A value of a duel that depends on the distance between the two vehicles. */

@@ -1,5 +1,7 @@
 package skein.planning
 
+import skein.units.eachBelow
+
 /** One vehicle's part in a joint plan.
   *
   * @param situation its `others` are only the vehicles that the joint plan does not control
@@ -55,9 +57,7 @@ object JointPlan:
 
   private def nearestM(one: PredictedTrack, other: PredictedTrack): Double =
     var least = Double.PositiveInfinity
-    var step  = 0
-    while step < one.steps do
+    eachBelow(one.steps): step =>
       val (x, y) = (one.x(step) - other.x(step), one.y(step) - other.y(step))
       least = math.min(least, x * x + y * y)
-      step += 1
     math.sqrt(least)

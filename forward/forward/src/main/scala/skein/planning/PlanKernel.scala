@@ -2,6 +2,7 @@ package skein.planning
 
 import java.util.Arrays
 import skein.simd.FixedFormula
+import skein.units.eachBelow
 
 /** Simulates many candidate manoeuvres of one vehicle with SIMD and computes their costs. The code is
   * compiled from the formulas of [[ManoeuvreRollout]], the scalar reference; `PlanKernelSuite` compares the
@@ -81,20 +82,15 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
     Arrays.fill(sin, 0, Size, StrictMath.sin(situation.headingRad).toFloat)
     steer.everywhere(4, situation.firstTurnS.toFloat)
     steer.everywhere(5, dtS.toFloat)
-    var step = 0
-    while step < steps do
+    eachBelow(steps): _ =>
       steer.next()
       steer.everywhere(4, dtS.toFloat)
       own.fly(north, east, 1)
-      step += 1
     System.arraycopy(effort, lastRow, cost, 0, Size)
 
   private def stayInside(geofence: Geofence): Unit =
     val stay = inside.of(geofence)
-    var step = 0
-    while step < steps do
-      add(stay)
-      step += 1
+    eachBelow(steps)(_ => add(stay))
 
   private def keepApart(situation: Situation, objective: PlanCost, dtS: Double): Unit =
     val origin = situation.own.motion
@@ -118,10 +114,7 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
     val approach = approached.of(objective)
     Arrays.fill(sum, 0, Size, Approach.none.sum.toFloat)
     Arrays.fill(nearest, 0, Size, Approach.none.least.toFloat)
-    var step = 0
-    while step < steps do
-      approach.next()
-      step += 1
+    eachBelow(steps)(_ => approach.next())
     val end = ended.of(objective)
     end.everywhere(11, carriesS.toFloat)
     end.everywhere(12, targetCarriesS.toFloat)

@@ -5,6 +5,7 @@ import skein.lanes.plant.PlantLanes
 import skein.lanes.policy.PolicyLanes
 import skein.policy.Policy
 import skein.simd.WorldRandom
+import skein.units.{eachBelow, eachFrom}
 import skein.vehicle.Plant
 
 /** Settings of a planner.
@@ -131,10 +132,8 @@ final class Planner private[planning] (
 
   private def cheapest: Int =
     var least = 0
-    var i     = 1
-    while i < size do
+    eachFrom(1, size): i =>
       if block.costs(i) < block.costs(least) then least = i
-      i += 1
     least
 
   private def manoeuvreAt(i: Int): Manoeuvre =
@@ -148,25 +147,19 @@ final class Planner private[planning] (
     val (costs, turnRates, speeds)        = (block.costs, block.turnRates, block.speeds)
     val (elites, eliteTurns, eliteSpeeds) = (eliteCosts, this.eliteTurns, this.eliteSpeeds)
     var worst                             = indexOfWorst
-    var i                                 = 0
-    while i < size do
+    eachBelow(size): i =>
       if costs(i) < elites(worst) then
         elites(worst) = costs(i)
-        var step = 0
-        while step < steps do
+        eachBelow(steps): step =>
           eliteTurns(step * elites.length + worst) = turnRates(step * size + i)
           eliteSpeeds(step * elites.length + worst) = speeds(step * size + i)
-          step += 1
         worst = indexOfWorst
-      i += 1
 
   private def indexOfWorst: Int =
     val costs = eliteCosts
     var worst = 0
-    var i     = 1
-    while i < costs.length do
+    eachFrom(1, costs.length): i =>
       if costs(i) > costs(worst) then worst = i
-      i += 1
     worst
 
   private def eliteSearch(before: SamplingDistribution): SamplingDistribution =
@@ -187,10 +180,8 @@ final class Planner private[planning] (
 
   private inline def meanOverElites(inline value: Int => Double): Double =
     var total = 0.0
-    var elite = 0
-    while elite < eliteCosts.length do
+    eachBelow(eliteCosts.length): elite =>
       total += value(elite)
-      elite += 1
     total / eliteCosts.length
 
 object Planner:

@@ -1,5 +1,6 @@
 package skein.planning
 
+import skein.units.eachBelow
 import skein.vehicle.{ObservedPlant, PlaneReading, Plant, PlantState, ReducedModel}
 
 /** A vehicle's state, with the plant that predicts it.
@@ -29,10 +30,8 @@ final case class PredictedVehicle[S](
   def flown(northMps: Double, eastMps: Double, dtS: Double): PredictedVehicle[S] =
     val pieces = PredictedVehicle.pieces(plant, dtS)
     var now    = state
-    var piece  = 0
-    while piece < pieces do
+    eachBelow(pieces): _ =>
       now = plant.step(now, northMps, eastMps, dtS / pieces)
-      piece += 1
     copy(state = now)
 
 object PredictedVehicle:

@@ -3,6 +3,7 @@ package skein.planning
 import java.util.Arrays
 import scala.collection.mutable
 import skein.lanes.plant.PlantLanes
+import skein.units.eachBelow
 import skein.vehicle.{PlaneReading, Plant, PlantState, ReducedModel}
 
 /** The track of one vehicle in each candidate's world. For the start and for the end of each step, `way` has
@@ -86,10 +87,7 @@ private[planning] final class VehicleLanes(steps: Int):
 
     def fly(north: Array[Float], east: Array[Float], speed: Float): Unit =
       call.command(north, east, speed)
-      var piece = 0
-      while piece < pieces do
-        call.next()
-        piece += 1
+      eachBelow(pieces)(_ => call.next())
       step += 1
       if !isWay then
         val flown = step * pieces % 2 * apart

@@ -3,6 +3,7 @@ package skein.simd
 import scala.collection.mutable
 import skein.formula.{Node, Op, Trace}
 import skein.simd.{LaneCompiler, LaneFunction}
+import skein.units.eachBelow
 
 /** A compiled function and the mapping of its inputs to the expressions' inputs. Expressions that are equal
   * except for the indices of their inputs share the code. Parameters are equal in all worlds.
@@ -91,18 +92,14 @@ private[skein] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
 
   /** Rewinds strided arguments to their first offsets. */
   def rewind(): Unit =
-    var i = 0
-    while i < offsets.length do
+    eachBelow(offsets.length): i =>
       if strides(i) > 0 then offsets(i) = starts(i)
-      i += 1
 
   /** Evaluates the function, and then advances every argument by its stride. A strided argument that passes
     * the end of its array returns to offset 0.
     */
   def next(): Unit =
     apply()
-    var i = 0
-    while i < offsets.length do
+    eachBelow(offsets.length): i =>
       val on = offsets(i) + strides(i)
       offsets(i) = if strides(i) > 0 && on >= arrays(i).length then 0 else on
-      i += 1

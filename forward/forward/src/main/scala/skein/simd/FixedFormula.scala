@@ -3,6 +3,7 @@ package skein.simd
 import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Angles, Evaluation, Formula, Fused, Trace, Untraceable}
 import skein.simd.LaneFunction
+import skein.units.eachBelow
 
 /** A compiled method of one object. The object's own fields are parameters, which are equal in all worlds.
   *
@@ -34,9 +35,6 @@ private[skein] final class FixedFormula private (
     Array.ofDim[Double](alike) ++ evaluation(Array.emptyDoubleArray, formula.parametersOf(other))
 
   private[skein] val parameters: Array[Double] = parametersOf(of)
-
-  /** Reorders the method's inputs to those of [[bound]]. */
-  private[skein] def inputsOf(own: Array[Double]): Array[Double] = bound.inputs.map(own(_))
 
   def call: FixedFormula.Call = call(of)
 
@@ -104,10 +102,8 @@ private[skein] object FixedFormula:
 
     /** Binds `count` consecutive inputs from `first` to `array`. */
     def inputs(first: Int, count: Int, array: Array[Float], from: Int): Unit =
-      var i = 0
-      while i < count do
+      eachBelow(count): i =>
         input(first + i, array, from + i * LaneFunction.COUNT)
-        i += 1
 
     def output(number: Int, array: Array[Float], from: Int): Unit = call.output(number, array, from)
 
@@ -124,10 +120,8 @@ private[skein] object FixedFormula:
 
     /** Binds the first `count` outputs consecutively to `array`. */
     def outputs(count: Int, array: Array[Float], from: Int): Unit =
-      var i = 0
-      while i < count do
+      eachBelow(count): i =>
         output(i, array, from + i * LaneFunction.COUNT)
-        i += 1
 
     /** Limits evaluation to the first worlds, until the next call. */
     def use(worlds: Int): Unit = call.use(worlds)

@@ -122,7 +122,9 @@ private object Names:
   val floats: ClassDesc               = ConstantDescs.CD_float.arrayType
   val ints: ClassDesc                 = ConstantDescs.CD_int.arrayType
 
-  val apply: MethodTypeDesc =
+  val fromArray: MethodTypeDesc = MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int)
+  val intoArray: MethodTypeDesc = MethodTypeDesc.of(ConstantDescs.CD_void, floats, ConstantDescs.CD_int)
+  val apply: MethodTypeDesc     =
     MethodTypeDesc.of(ConstantDescs.CD_void, floats.arrayType, ints, floats, floats, ConstantDescs.CD_int)
 
 /** Generates the bytecode of one pass. A vector is identified by its local variable.
@@ -209,87 +211,58 @@ private final class PassCompiler(
     floatConstants.getOrElseUpdate(java.lang.Float.floatToRawIntBits(value), fresh())
   protected def bitConstant(value: Int): Int = bitConstants.getOrElseUpdate(value, fresh())
 
-  protected def neg(a: Int): Int                 = one("neg", a)
-  protected def abs(a: Int): Int                 = one("abs", a)
-  protected def sqrt(a: Int): Int                = one("sqrt", a)
-  protected def add(a: Int, b: Int): Int         = two("add", a, b)
-  protected def sub(a: Int, b: Int): Int         = two("sub", a, b)
-  protected def mul(a: Int, b: Int): Int         = two("mul", a, b)
-  protected def div(a: Int, b: Int): Int         = two("div", a, b)
-  protected def fma(a: Int, b: Int, c: Int): Int =
-    load(a); load(b); load(c)
-    code.invokevirtual(float, "fma", MethodTypeDesc.of(float, any, any))
-    stored()
+  protected def neg(a: Int): Int                 = call("neg", float, float)(a)
+  protected def abs(a: Int): Int                 = call("abs", float, float)(a)
+  protected def sqrt(a: Int): Int                = call("sqrt", float, float)(a)
+  protected def add(a: Int, b: Int): Int         = call("add", float, float, any)(a, b)
+  protected def sub(a: Int, b: Int): Int         = call("sub", float, float, any)(a, b)
+  protected def mul(a: Int, b: Int): Int         = call("mul", float, float, any)(a, b)
+  protected def div(a: Int, b: Int): Int         = call("div", float, float, any)(a, b)
+  protected def fma(a: Int, b: Int, c: Int): Int = call("fma", float, float, any, any)(a, b, c)
   protected def choose(otherwise: Int, where: Int, condition: Int): Int =
-    load(otherwise); load(where); load(condition)
-    code.invokevirtual(float, "blend", MethodTypeDesc.of(float, any, mask))
-    stored()
+    call("blend", float, float, any, mask)(otherwise, where, condition)
 
   protected def isLess(a: Int, b: Int): Int   = compare(float, "LT", a, b)
   protected def isAtMost(a: Int, b: Int): Int = compare(float, "LE", a, b)
   protected def isEqual(a: Int, b: Int): Int  = compare(float, "EQ", a, b)
-  protected def not(a: Int): Int              =
-    load(a)
-    code.invokevirtual(mask, "not", MethodTypeDesc.of(mask))
-    stored()
-  protected def and(a: Int, b: Int): Int = masks("and", a, b)
-  protected def or(a: Int, b: Int): Int  = masks("or", a, b)
+  protected def not(a: Int): Int              = call("not", mask, mask)(a)
+  protected def and(a: Int, b: Int): Int      = call("and", mask, mask, mask)(a, b)
+  protected def or(a: Int, b: Int): Int       = call("or", mask, mask, mask)(a, b)
 
-  protected def bitsOf(a: Int): Int          = reinterpret(a, float, "reinterpretAsInts", int)
-  protected def ofBits(a: Int): Int          = reinterpret(a, int, "reinterpretAsFloats", float)
-  protected def addBits(a: Int, b: Int): Int = bits("add", a, b)
-  protected def andBits(a: Int, b: Int): Int = bits("and", a, b)
-  protected def orBits(a: Int, b: Int): Int  = bits("or", a, b)
+  protected def bitsOf(a: Int): Int          = call("reinterpretAsInts", float, int)(a)
+  protected def ofBits(a: Int): Int          = call("reinterpretAsFloats", int, float)(a)
+  protected def addBits(a: Int, b: Int): Int = call("add", int, int, any)(a, b)
+  protected def andBits(a: Int, b: Int): Int = call("and", int, int, any)(a, b)
+  protected def orBits(a: Int, b: Int): Int  = call("or", int, int, any)(a, b)
   protected def xorBits(a: Int, b: Int): Int =
-    load(a)
+    code.aload(a)
     code.getstatic(operators, "XOR", associative)
-    load(b)
+    code.aload(b)
     code.invokevirtual(int, "lanewise", MethodTypeDesc.of(int, binary, any))
     stored()
   protected def shiftLeft(a: Int, by: Int): Int =
-    load(a)
+    code.aload(a)
     code.getstatic(operators, "LSHL", binary).loadConstant(by)
     code.invokevirtual(int, "lanewise", MethodTypeDesc.of(int, binary, ConstantDescs.CD_int))
     stored()
   protected def isHighest(a: Int): Int =
-    load(compare(int, "LT", a, bitConstant(0)))
+    code.aload(compare(int, "LT", a, bitConstant(0)))
     code.getstatic(math, "SPECIES", species)
     code.invokevirtual(mask, "cast", MethodTypeDesc.of(mask, species))
     stored()
 
-  private def one(name: String, a: Int): Int =
-    load(a)
-    code.invokevirtual(float, name, MethodTypeDesc.of(float))
-    stored()
-
-  private def two(name: String, a: Int, b: Int): Int =
-    load(a); load(b)
-    code.invokevirtual(float, name, MethodTypeDesc.of(float, any))
-    stored()
-
-  private def bits(name: String, a: Int, b: Int): Int =
-    load(a); load(b)
-    code.invokevirtual(int, name, MethodTypeDesc.of(int, any))
-    stored()
-
-  private def masks(name: String, a: Int, b: Int): Int =
-    load(a); load(b)
-    code.invokevirtual(mask, name, MethodTypeDesc.of(mask, mask))
+  /** Calls a method of the first of some vectors; the others are its arguments. */
+  private def call(name: String, of: ClassDesc, into: ClassDesc, arguments: ClassDesc*)(vectors: Int*): Int =
+    for vector <- vectors do code.aload(vector)
+    code.invokevirtual(of, name, MethodTypeDesc.of(into, arguments*))
     stored()
 
   private def compare(of: ClassDesc, how: String, a: Int, b: Int): Int =
-    load(a)
+    code.aload(a)
     code.getstatic(operators, how, comparison)
-    load(b)
+    code.aload(b)
     code.invokevirtual(of, "compare", MethodTypeDesc.of(mask, comparison, any))
     stored()
-
-  private def reinterpret(a: Int, from: ClassDesc, how: String, to: ClassDesc): Int =
-    load(a)
-    code.invokevirtual(from, how, MethodTypeDesc.of(to))
-    stored()
-
-  private def load(place: Int): Unit = code.aload(place): Unit
 
   private def stored(): Int =
     val place = fresh()
@@ -299,7 +272,7 @@ private final class PassCompiler(
   /** Loads values of the present worlds from an argument's array, from an index on. */
   private def loaded(argument: Int, from: Int): Int =
     code.getstatic(math, "SPECIES", species).aload(argument).iload(world).loadConstant(from).iadd()
-    code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
+    code.invokestatic(float, "fromArray", fromArray)
     stored()
 
   protected def parameter(number: Int): Int =
@@ -312,7 +285,7 @@ private final class PassCompiler(
       // See LaneFunction.place.
       code.iload(world).loadConstant(parameters).imul()
       code.loadConstant(LaneFunction.place(number, 0, parameters)).iadd()
-      code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
+      code.invokestatic(float, "fromArray", fromArray)
     stored()
 
   protected def input(number: Int): Int =
@@ -321,7 +294,7 @@ private final class PassCompiler(
   private def row(number: Int): Int =
     code.getstatic(math, "SPECIES", species)
     locate(number)
-    code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
+    code.invokestatic(float, "fromArray", fromArray)
     stored()
 
   /** Pushes the array of an input or output, and the index of the present worlds in it. */
@@ -333,17 +306,9 @@ private final class PassCompiler(
 
   private def store(vector: Int, argument: Int, to: Int): Unit =
     code.aload(vector).aload(argument).iload(world).loadConstant(to).iadd()
-    code.invokevirtual(
-      float,
-      "intoArray",
-      MethodTypeDesc.of(ConstantDescs.CD_void, floats, ConstantDescs.CD_int)
-    ): Unit
+    code.invokevirtual(float, "intoArray", intoArray): Unit
 
   private def storeTo(vector: Int, number: Int): Unit =
     code.aload(vector)
     locate(number)
-    code.invokevirtual(
-      float,
-      "intoArray",
-      MethodTypeDesc.of(ConstantDescs.CD_void, floats, ConstantDescs.CD_int)
-    ): Unit
+    code.invokevirtual(float, "intoArray", intoArray): Unit

@@ -14,7 +14,7 @@ class EngagementSuite extends munit.FunSuite:
       .getOrElse(duel.head.copy(role = role))
       .copy(name = s"$role$number", startPositionNed = Vector3(north, east, -20), policy = policy)
 
-  private def places(rollout: Rollout, key: Int = 7): Vector[(Int, Double, Double)] =
+  private def places(rollout: ScoredRollout, key: Int = 7): Vector[(Int, Double, Double)] =
     val seen = Vector.newBuilder[(Int, Double, Double)]
     val _    = rollout.fly(
       key,
@@ -34,14 +34,19 @@ class EngagementSuite extends munit.FunSuite:
 
   test("a scenario of one pursuer and one evader is the duel, to the last bit, in every loop"):
     for loop <- loops do
-      val one = Rollout(
+      val one = ScoredRollout(
         Engagement.of(PaperDuel().fleet),
         loop,
         DelayTable.vpn,
         PlantResponse(ReducedModel.AirSimLag)
       ).fly(3)
       val same =
-        Rollout(Pair.paper.engagement, loop, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag)).fly(3)
+        ScoredRollout(
+          Pair.paper.engagement,
+          loop,
+          DelayTable.vpn,
+          PlantResponse(ReducedModel.AirSimLag)
+        ).fly(3)
       assertEquals(one, same, loop.toString)
 
   test("duels far from each other are simulated like each alone"):
@@ -57,14 +62,14 @@ class EngagementSuite extends munit.FunSuite:
       )
     )
     val alone =
-      places(Rollout(
+      places(ScoredRollout(
         Pair.paper.engagement,
         LoopTiming.Paused(),
         DelayTable.none,
         PlantResponse(ReducedModel.AirSimLag)
       ))
     val together =
-      places(Rollout(
+      places(ScoredRollout(
         Engagement.of(scenario),
         LoopTiming.Paused(),
         DelayTable.none,
@@ -88,7 +93,7 @@ class EngagementSuite extends munit.FunSuite:
         agent(Role.Pursuer, 1, 0, 0, PurePursuit(3))
       )
     )
-    val seen = places(Rollout(
+    val seen = places(ScoredRollout(
       Engagement.of(scenario, 12),
       LoopTiming.Stream(),
       DelayTable.direct,
@@ -108,7 +113,7 @@ class EngagementSuite extends munit.FunSuite:
     val nearest              = Engagement.of(Fleet(agents), 3)
     val assigned             = nearest.copy(assignment = Assignment(Vector(Vector(2), Vector(2), Vector(0))))
     def last(of: Engagement) =
-      places(Rollout(of, LoopTiming.Paused(), DelayTable.none, VelocityResponses.Ideal)).last
+      places(ScoredRollout(of, LoopTiming.Paused(), DelayTable.none, VelocityResponses.Ideal)).last
     assert(last(nearest)._3 > 5, s"${last(nearest)}: the nearer evader runs east")
     assertEqualsDouble(last(assigned)._3, 0, 1e-9)
 
@@ -122,7 +127,7 @@ class EngagementSuite extends munit.FunSuite:
       )
     )
     val rollout =
-      Rollout(Engagement.of(scenario, 8), LoopTiming.Paused(), DelayTable.none, VelocityResponses.Ideal)
+      ScoredRollout(Engagement.of(scenario, 8), LoopTiming.Paused(), DelayTable.none, VelocityResponses.Ideal)
     val flown = rollout.fly(0, captureRadiusM = 2)
     val each  = rollout.evaderOutcomes
     // The pursuer behind is 40 m away and gains 5 m/s; the one ahead closes faster.
@@ -163,7 +168,7 @@ class EngagementSuite extends munit.FunSuite:
       .map:
         case ((north, speed), number) =>
           agent(Role.Traveller, number, north, 0, KeepHeading).copy(policy = ToSecond(speed))
-    val rollout = Rollout(
+    val rollout = ScoredRollout(
       Engagement.of(Fleet(agents), 5),
       LoopTiming.Paused(),
       DelayTable.none,

@@ -31,7 +31,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
         2 * math.Pi * random.nextDouble()
       )
 
-  private def duel(pursuer: Policy, evader: Policy, start: Start, durationS: Double): Rollout =
+  private def duel(pursuer: Policy, evader: Policy, start: Start, durationS: Double): ScoredRollout =
     val engaged = Pair(
       Pair.paper.pursuer.copy(policy = pursuer, startX = 0, startY = 0, startHeadingRad = 0),
       Pair.paper.evader.copy(
@@ -42,7 +42,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       ),
       durationS
     )
-    Rollout(engaged.engagement, LoopTiming.Paused(0.0025), DelayTable.none, VelocityResponses.Ideal)
+    ScoredRollout(engaged.engagement, LoopTiming.Paused(0.0025), DelayTable.none, VelocityResponses.Ideal)
 
   private def closestM(
       pursuer: Policy,

@@ -17,7 +17,7 @@ class ImageTimingSuite extends munit.FunSuite:
   private def rollout(takes: LatencyDistribution, deadlineS: Double, timing: LoopTiming) =
     val camera = busy.copy(takes = takes, deadlineS = deadlineS)
     val paper  = Pair.paper
-    Rollout(
+    ScoredRollout(
       paper.copy(pursuer = paper.pursuer.copy(eye = Some(camera)), durationS = 12).engagement,
       timing,
       link,

@@ -30,7 +30,7 @@ class RolloutOracleSuite extends munit.FunSuite:
 
   private def positions(duel: Pair, timing: LoopTiming, link: Delays, model: VelocityResponse, key: Int) =
     val points = ArrayBuffer.empty[Vector[Double]]
-    val _      = Rollout(duel.engagement, timing, link, model).fly(
+    val _      = ScoredRollout(duel.engagement, timing, link, model).fly(
       key,
       observer = PaperPath((_, ex, ey, px, py) => points += Vector(ex, ey, px, py))
     )
@@ -46,7 +46,7 @@ class RolloutOracleSuite extends munit.FunSuite:
     test(s"a straight chase to $radiusM m takes (d − l) / (vP − vE), to a period"):
       val chase = duel(PurePursuit(1), away, 21, 0, 10)
       val flown =
-        Rollout(chase.engagement, LoopTiming.Paused(0.002), DelayTable.none, VelocityResponses.Ideal)
+        ScoredRollout(chase.engagement, LoopTiming.Paused(0.002), DelayTable.none, VelocityResponses.Ideal)
           .fly(0, captureRadiusM = radiusM)
       assertEqualsDouble(flown.captureS, (21.0 - radiusM) / (10.0 - 5.0), 0.0021)
 
@@ -90,7 +90,8 @@ class RolloutOracleSuite extends munit.FunSuite:
     val observer = new LoopObserver:
       override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit =
         sent(vehicle) += action.headingRad(0)
-    val _ = Rollout(Pair.paper.copy(durationS = 20).engagement, timing, link, lag).fly(0, observer = observer)
+    val _ =
+      ScoredRollout(Pair.paper.copy(durationS = 20).engagement, timing, link, lag).fly(0, observer = observer)
     sent.view.mapValues(_.toVector).toMap
 
   for roundTripMs <- Seq(0.0, 30.0, 70.0) do

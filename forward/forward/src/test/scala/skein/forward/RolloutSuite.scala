@@ -14,12 +14,12 @@ class RolloutSuite extends munit.FunSuite:
   private val awayFrom: HeadingPolicy.Memoryless = seen => math.atan2(-seen.dyM, -seen.dxM)
   private val lag: VelocityResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
-  private def trajectory(rollout: Rollout, key: Int): Vector[(Double, Double, Double, Double)] =
+  private def trajectory(rollout: ScoredRollout, key: Int): Vector[(Double, Double, Double, Double)] =
     val points = ArrayBuffer.empty[(Double, Double, Double, Double)]
     val _      = rollout.fly(key, observer = PaperPath((_, ex, ey, px, py) => points += ((ex, ey, px, py))))
     points.toVector
 
-  private def distances(rollout: Rollout, key: Int): Vector[Double] =
+  private def distances(rollout: ScoredRollout, key: Int): Vector[Double] =
     trajectory(rollout, key).map((ex, ey, px, py) => math.hypot(ex - px, ey - py))
 
   private def assertClose(actual: Seq[Double], expected: Seq[Double], tolerance: Double): Unit =
@@ -28,8 +28,13 @@ class RolloutSuite extends munit.FunSuite:
 
   for model <- Seq(VelocityResponses.quadrotor(), lag, VelocityResponses.Ideal); loop <- loops do
     test(s"without delays, $loop flies as paused does, with ${model.getClass.getSimpleName}"):
-      val truth = distances(Rollout(Pair.paper.engagement, LoopTiming.Paused(), DelayTable.none, model), 1)
-      assertClose(distances(Rollout(Pair.paper.engagement, loop, DelayTable.none, model), 1), truth, 1e-6)
+      val truth =
+        distances(ScoredRollout(Pair.paper.engagement, LoopTiming.Paused(), DelayTable.none, model), 1)
+      assertClose(
+        distances(ScoredRollout(Pair.paper.engagement, loop, DelayTable.none, model), 1),
+        truth,
+        1e-6
+      )
 
   test("an exception in a policy or a plant is reported with its class and line"):
     final class Lost extends HeadingPolicy.Memoryless:
@@ -41,7 +46,7 @@ class RolloutSuite extends munit.FunSuite:
       def step(state: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
         throw Exception("no way")
     def told(duel: Pair, plant: VelocityResponse) =
-      intercept[OwnFailure](Rollout(
+      intercept[OwnFailure](ScoredRollout(
         duel.engagement,
         LoopTiming.Stream(),
         DelayTable.vpn,
@@ -55,7 +60,7 @@ class RolloutSuite extends munit.FunSuite:
 
   for loop <- loops do
     test(s"under $loop the result of a world depends only on its key"):
-      val rollout = Rollout(Pair.paper.engagement, loop, DelayTable.vpn, lag)
+      val rollout = ScoredRollout(Pair.paper.engagement, loop, DelayTable.vpn, lag)
       val alone   = rollout.fly(WorldRandom.key(7, 3, 11))
       for episode <- 0 until 5 do rollout.fly(WorldRandom.key(7, 3, episode))
       assertEquals(rollout.fly(WorldRandom.key(7, 3, 11)), alone)
@@ -72,8 +77,8 @@ class RolloutSuite extends munit.FunSuite:
       )
       val turned = Pair(turn(offset.pursuer), turn(offset.evader))
       val key    = WorldRandom.key(1, 2, 3)
-      val plain  = distances(Rollout(offset.engagement, loop, DelayTable.direct, lag), key)
-      assertClose(distances(Rollout(turned.engagement, loop, DelayTable.direct, lag), key), plain, 1e-6)
+      val plain  = distances(ScoredRollout(offset.engagement, loop, DelayTable.direct, lag), key)
+      assertClose(distances(ScoredRollout(turned.engagement, loop, DelayTable.direct, lag), key), plain, 1e-6)
 
   test("with symmetric policies, the mirrored duel has the mirrored flight"):
     val evader: HeadingPolicy.Memoryless =
@@ -85,14 +90,14 @@ class RolloutSuite extends munit.FunSuite:
         Pair.paper.evader.copy(policy = evader, startHeadingRad = 0.4 * side),
         durationS = 20
       )
-      trajectory(Rollout(duel.engagement, LoopTiming.Stream(), DelayTable.vpn, lag), key)
+      trajectory(ScoredRollout(duel.engagement, LoopTiming.Stream(), DelayTable.vpn, lag), key)
     for ((ex, ey, px, py), (mx, my, qx, qy)) <- fly(1).zip(fly(-1)) do
       assertClose(Seq(mx, -my, qx, -qy), Seq(ex, ey, px, py), 1e-6)
 
   test("a straight chase ends after (d − l) / (vP − vE)"):
     val duel  = Pair(Pair.paper.pursuer.copy(policy = towards), Pair.paper.evader.copy(policy = awayFrom))
     val flown =
-      Rollout(duel.engagement, LoopTiming.Paused(0.01), DelayTable.none, VelocityResponses.Ideal).fly(
+      ScoredRollout(duel.engagement, LoopTiming.Paused(0.01), DelayTable.none, VelocityResponses.Ideal).fly(
         0,
         captureRadiusM = 2
       )
@@ -100,7 +105,7 @@ class RolloutSuite extends munit.FunSuite:
 
   test("the paper's game, paused, settles at the distance of AirSim's own flight code, 8.31 m ± 3 %"):
     val flown =
-      Rollout(
+      ScoredRollout(
         Pair.paper.engagement,
         LoopTiming.Paused(),
         DelayTable.none,
@@ -119,7 +124,7 @@ class RolloutSuite extends munit.FunSuite:
     )
   do
     test(s"$loop over $name settles, like the reference flights, between $least and $most m"):
-      val rollout = Rollout(Pair.paper.engagement, loop, link, VelocityResponses.quadrotor())
+      val rollout = ScoredRollout(Pair.paper.engagement, loop, link, VelocityResponses.quadrotor())
       for episode <- 0 until 4 do
         val settled = rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM
         assert(settled > least && settled < most, s"episode $episode: $settled m")
@@ -129,18 +134,23 @@ class RolloutSuite extends munit.FunSuite:
       "period"
   ):
     val link    = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(50)))
-    val rollout = Rollout(Pair.paper.engagement, LoopTiming.Sequential(0.1), link, lag)
+    val rollout = ScoredRollout(Pair.paper.engagement, LoopTiming.Sequential(0.1), link, lag)
     assertEqualsDouble(rollout.fly(0).decisions / 2.0, 60 / 0.2, 1.0)
 
   test("stream skips views if acknowledgements of commands take longer than two periods"):
     val link  = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(300)))
-    val flown = Rollout(Pair.paper.engagement, LoopTiming.Stream(), link, lag).fly(0)
+    val flown = ScoredRollout(Pair.paper.engagement, LoopTiming.Stream(), link, lag).fly(0)
     assert(flown.skipped > 300, flown)
     assertEqualsDouble(flown.decisions + flown.skipped, 1200, 20)
 
   test("stream has a view at each reading without patience, and one per pair of readings with it"):
     def flown(patienceS: Double) =
-      Rollout(Pair.paper.engagement, LoopTiming.Stream(patienceS = patienceS), DelayTable.none, lag).fly(0)
+      ScoredRollout(
+        Pair.paper.engagement,
+        LoopTiming.Stream(patienceS = patienceS),
+        DelayTable.none,
+        lag
+      ).fly(0)
     assertEquals((flown(0.1).decisions, flown(0).decisions), (1200, 2398))
 
   test("after its patience, stream continues without a vehicle that no longer answers"):
@@ -148,7 +158,7 @@ class RolloutSuite extends munit.FunSuite:
       (_, line, step, _, _) => if line == Delays.answer(0, 1) && step > 0 then 1L << 40 else 0L
     val timing = LoopTiming.Stream(patienceS = 0.05)
     // The first view is of the start; in each of the 599 periods after it one waits in vain.
-    assertEquals(Rollout(Pair.paper.engagement, timing, link, lag).fly(0).decisions, 1200)
+    assertEquals(ScoredRollout(Pair.paper.engagement, timing, link, lag).fly(0).decisions, 1200)
 
   test("the last ten seconds of a minute contain a hundred distances, those after its fiftieth second"):
     assertEqualsDouble(Rollout.last10sFromS(60, 0.1), 50.1, 1e-9)

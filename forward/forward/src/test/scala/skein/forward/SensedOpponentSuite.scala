@@ -32,7 +32,7 @@ class SensedOpponentSuite extends munit.FunSuite:
       link: Delays = DelayTable.none,
       seed: Int = 1
   ) =
-    Rollout(
+    ScoredRollout(
       duel(eye).engagement,
       timing,
       link,
@@ -119,7 +119,8 @@ class SensedOpponentSuite extends munit.FunSuite:
         def pursuer(world: Int): Policy = SensedOpponentSuite.this.pursuer
         def evader(world: Int): Policy  = SensedOpponentSuite.this.evader
       val outcomes = batch.fly(worlds)
-      val rollout  = Rollout(beside.engagement, timing, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
+      val rollout  =
+        ScoredRollout(beside.engagement, timing, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
       for world <- 0 until worlds.size by 7 do
         val alone = rollout.fly(worlds.key(world))
         assertEqualsDouble(outcomes.meanLast10sM(world), alone.meanLast10sM, 5e-3, s"world $world")

@@ -9,7 +9,7 @@ class SensedResponseSuite extends munit.FunSuite:
   private def sensed(text: String) = SensedResponse(ideal, SensorNoise.parse(text).fold(fail(_), identity))
 
   private def rollout(timing: LoopTiming, model: VelocityResponse) =
-    Rollout(Pair.paper.engagement, timing, DelayTable.vpn, model)
+    ScoredRollout(Pair.paper.engagement, timing, DelayTable.vpn, model)
 
   private final class Told extends LoopObserver:
     val read, scored = ArrayBuffer.empty[(Int, Double, Double, Double)]

@@ -205,8 +205,8 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
     Option.when(isFound != lanes.isFound):
       val detected = lanes.by.detected
       val shown    = Seq(detected.bound.nodes(0))
-      val inputs   = detected.inputsOf(doubles)
-      val off      = inputs.zip(detected.inputsOf(floats)).map((x, y) => math.abs(x - y))
+      val inputs   = detected.bound.inputs.map(doubles(_))
+      val off      = inputs.zip(detected.bound.inputs.map(floats(_))).map((x, y) => math.abs(x - y))
       // The number drawn is exact; beyond the probability of detection nothing is found.
       val drawn = scalar.found < camera.detection
       val near  =
@@ -251,10 +251,10 @@ private object CameraTrackerAgreement:
           times(at),
           inputs(
             axis(world),
-            ours.seenX(we),
-            ours.seenY(we),
-            theirs.seenX(they),
-            theirs.seenY(they),
+            ours.seen(0)(we),
+            ours.seen(1)(we),
+            theirs.seen(0)(they),
+            theirs.seen(1)(they),
             own.altitudeDownM
           ),
           shown(world) > 0

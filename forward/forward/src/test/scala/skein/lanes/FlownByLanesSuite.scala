@@ -145,7 +145,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     for world <- 0 until all.size by 5 do
       val own =
         Pair(duel.pursuer.copy(policy = all.pursuer(world)), duel.evader.copy(policy = all.evader(world)), 3)
-      val scalar = Rollout(own.engagement, timing, DelayTable.vpn, model).fly(all.key(world))
+      val scalar = ScoredRollout(own.engagement, timing, DelayTable.vpn, model).fly(all.key(world))
       assertEqualsDouble(flown.meanDistanceM(world), scalar.meanDistanceM, 4e-3, s"world $world")
       assertEqualsDouble(flown.pursuerEffortRad(world), scalar.pursuerEffortRad, 4e-3, s"world $world")
 

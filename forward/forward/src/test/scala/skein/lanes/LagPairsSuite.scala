@@ -6,12 +6,12 @@ import skein.forward.{
   Pair,
   EpisodeOutcome,
   LoopTiming,
-  Rollout,
+  ScoredRollout,
   TabledDelays,
   VelocityResponse,
   VelocityResponses
 }
-import skein.lanes.policy.LanePolicy
+import skein.lanes.LanePolicies.take
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
@@ -41,7 +41,7 @@ class LagPairsSuite extends munit.FunSuite:
       shortCut: Boolean = true,
       order: Array[Int] = Array.range(0, worlds)
   ): PairKernel =
-    val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
+    val (pursuers, evaders) = (LanePolicies.of(PaperPursuer()), LanePolicies.of(PaperEvader()))
     for (of, world) <- order.zipWithIndex do
       pursuers.take(world, PaperPursuer(turnRates(of)))
       evaders.take(world, PaperEvader(radii(of)))
@@ -81,7 +81,10 @@ class LagPairsSuite extends munit.FunSuite:
       val kernel = fly(link, 5)
       val equal  = (0 until worlds).count: world =>
         val scalar =
-          Rollout(duel(world, 5).engagement, LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
+          ScoredRollout(duel(world, 5).engagement, LoopTiming.Stream(), link, lag).fly(
+            keys(world),
+            captureRadiusM
+          )
         (kernel(PairNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
         (kernel(PairNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&
         (kernel(PairNumber.PursuerEffort)(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
@@ -92,7 +95,7 @@ class LagPairsSuite extends munit.FunSuite:
       val kernel  = fly(link, 60)
       val scalars = ArrayBuffer.empty[EpisodeOutcome]
       for world <- 0 until worlds do
-        scalars += Rollout(
+        scalars += ScoredRollout(
           duel(world, 60).engagement,
           LoopTiming.Stream(),
           link,

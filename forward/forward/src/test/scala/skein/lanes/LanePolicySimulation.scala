@@ -38,7 +38,7 @@ class LanePolicySimulation extends munit.FunSuite:
         val ownHeading            = uniform(3)
         val knownHeadings         = Vector.fill(worlds)(uniform(10))
         for (policy, world) <- policies.zipWithIndex do
-          lanes.take(world, policy)
+          LanePolicies.take(lanes)(world, policy)
           for (numbers, most) <- read.zip(Seq(25, 25, 12, 12)) do numbers(world) = uniform(most).toFloat
           observation.elapsed(world) = (0.1 * random.nextDouble()).toFloat
           known.fill(world, world + 1, knownHeadings(world))

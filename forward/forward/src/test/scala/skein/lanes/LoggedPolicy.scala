@@ -6,7 +6,7 @@ import skein.lanes.policy.{Directions, LaneObservation, LanePolicy, PolicyLanes}
 import skein.policy.Policy
 
 /** Records the inputs and results of many worlds' decisions. */
-private[skein] final class LoggedPolicy(of: Policy) extends LanePolicy(PolicyLanes.get(of)):
+private[skein] final class LoggedPolicy(of: Policy) extends LanePolicy(PolicyLanes.get(of), true):
   import LoggedPolicy.*
   private val form   = PolicyLanes.get(of)
   private val worlds = LanePolicy.WORLDS
@@ -34,9 +34,9 @@ private[skein] final class LoggedPolicy(of: Policy) extends LanePolicy(PolicyLan
   ): Unit =
     super.decide(observation, own, ownAt, known, knownAt, into, intoAt)
     val read = Vector.tabulate(LaneObservation.READ): what =>
-      val difference = Array.ofDim[Float](worlds)
-      observation.difference(what, difference)
-      difference
+      val (theirs, ours) = (observation.opponent(what), observation.own(what))
+      Array.tabulate(worlds): i =>
+        theirs(observation.opponentAt(what) + i) - ours(observation.ownAt(what) + i)
     def copied(from: Int, until: Int) =
       Vector.range(from, until).map(i => Arrays.copyOfRange(arrays(i), offsets(i), offsets(i) + worlds))
     made += Made(
@@ -48,9 +48,9 @@ private[skein] final class LoggedPolicy(of: Policy) extends LanePolicy(PolicyLan
     super.commit(effort)
     for of <- numbers do of += made.size - 1
 
-  override def rememberBefore(times: Array[Int], from: Int, before: Int): Unit =
-    super.rememberBefore(times, from, before)
-    for world <- 0 until worlds if times(from + world) < before do numbers(world) += made.size - 1
+  override def rememberBefore(times: Array[Int], before: Int): Unit =
+    super.rememberBefore(times, before)
+    for world <- 0 until worlds if times(world) < before do numbers(world) += made.size - 1
 
 private[skein] object LoggedPolicy:
   /** Values by input or output of the policy's form, then by world. */

@@ -14,7 +14,7 @@ import skein.forward.{
   VelocityResponses
 }
 import skein.identify.Tilting
-import skein.lanes.policy.LanePolicy
+import skein.lanes.LanePolicies.take
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.port.Moves
@@ -56,7 +56,7 @@ abstract class LoopPairAgreement(isDaily: Boolean) extends munit.FunSuite:
       model: VelocityResponse,
       keys: Array[Int] = keys
   ): PairKernel =
-    val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
+    val (pursuers, evaders) = (LanePolicies.of(PaperPursuer()), LanePolicies.of(PaperEvader()))
     for world <- 0 until worlds do
       pursuers.take(world, PaperPursuer(0.6 + 0.008 * world))
       evaders.take(world, PaperEvader(7 + 0.02 * world))

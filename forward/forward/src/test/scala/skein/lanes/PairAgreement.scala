@@ -33,7 +33,8 @@ private[skein] class PairAgreement(
       val logs   = policies.map(of => Log(of(world)))
       val events = Events()
       val scalar = duel.copy(duel.pursuer.copy(policy = logs(1)), duel.evader.copy(policy = logs(0)))
-      val came   = Rollout(scalar.engagement, timing, link(world), model).fly(key(world), captureM, events)
+      val came   =
+        ScoredRollout(scalar.engagement, timing, link(world), model).fly(key(world), captureM, events)
       // The errors of directions so far, each within its bound.
       var off   = 0.0
       val first = events.all.iterator
@@ -75,7 +76,7 @@ private[skein] class PairAgreement(
     val number = lanes(agent).number(world, k)
     must(number >= 0, s"$where: lanes decided only ${lanes(agent).count(world)} times")
     val ours   = lanes(agent).made(number)
-    val inputs = inputsOf(form, log.seen(k), log.before(k), ours, world)
+    val inputs = inputsOf(log.seen(k), log.before(k), ours, world)
     val off    = ours.off(inputs, world)
     for i <- 0 until LaneObservation.READ if i < 2 || form.needsVelocity do
       must(off(i) < placesOff, s"$where: ${off(i)} off in reading $i")
@@ -142,13 +143,12 @@ private[skein] object PairAgreement:
 
   /** The decision of a policy in doubles, by its form. */
   private def inputsOf(
-      form: PolicyLanes,
       seen: PlanarObservation,
       memory: Any,
       ours: LoggedPolicy.Made,
       world: Int
   ): Array[Double] =
-    val inputs = form.inputsOf(seen, memory)
+    val inputs = LanePolicies.inputsOf(seen, memory)
     // Angles a turn apart are one.
     inputs(
       Heading
@@ -167,7 +167,7 @@ private[skein] object PairAgreement:
       world: Int
   ): Option[Agreement.Departure] =
     val form    = PolicyLanes.get(policy)
-    val inputs  = inputsOf(form, seen, memory, ours, world)
+    val inputs  = inputsOf(seen, memory, ours, world)
     val turning = form.keepsHeading
     Agreement.departure(
       agent,
@@ -238,7 +238,7 @@ private[skein] object PairAgreement:
   def taken(pursuer: Int => Policy, evader: Int => Policy): Vector[LoggedPolicy] =
     Vector(evader, pursuer).map: of =>
       val lanes = LoggedPolicy(of(0))
-      for world <- 0 until PairKernels.WORLDS do lanes.take(world, of(world))
+      for world <- 0 until PairKernels.WORLDS do LanePolicies.take(lanes)(world, of(world))
       lanes
 
   enum Event:

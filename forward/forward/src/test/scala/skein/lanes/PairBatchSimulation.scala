@@ -11,7 +11,7 @@ import skein.forward.{
   LoopTiming,
   PlantResponse,
   RecordedDelays,
-  Rollout,
+  ScoredRollout,
   Steering,
   VelocityResponse,
   VelocityResponses
@@ -273,7 +273,7 @@ object PairBatchSimulation:
       from.evader.copy(policy = worlds.evader(world)),
       12
     )
-    val o = Rollout(duel.engagement, timing, worlds.link(world), model).fly(worlds.key(world), 5)
+    val o = ScoredRollout(duel.engagement, timing, worlds.link(world), model).fly(worlds.key(world), 5)
     Vector(o.minDistanceM, o.meanDistanceM, o.meanLast10sM, o.captureS, o.pursuerEffortRad, o.evaderEffortRad)
       .map(_.toFloat)
 

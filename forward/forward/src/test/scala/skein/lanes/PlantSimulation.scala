@@ -56,7 +56,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       short.evader.copy(policy = all.evader(world)),
       short.durationS
     )
-    val scalar = Rollout(duel.engagement, timing, all.link(world), vehicle).fly(all.key(world))
+    val scalar = ScoredRollout(duel.engagement, timing, all.link(world), vehicle).fly(all.key(world))
     (flown.meanDistanceM(world) - scalar.meanDistanceM).abs max
       (flown.minDistanceM(world) - scalar.minDistanceM).abs
 
@@ -99,13 +99,13 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
     val timing = LoopTiming.Stream()
     for key <- 1 to 5 do
       val plant =
-        Rollout(
+        ScoredRollout(
           short.engagement,
           timing,
           DelayTable.vpn,
           PlantResponse(GuideExample.Lagging(0.9, 0.8))
         ).fly(key)
-      val exact = Rollout(short.engagement, timing, DelayTable.vpn, lag).fly(key)
+      val exact = ScoredRollout(short.engagement, timing, DelayTable.vpn, lag).fly(key)
       assertEqualsDouble(plant.meanDistanceM, exact.meanDistanceM, 1e-9)
 
   for (name, plant, addsStart) <- Seq(
@@ -127,7 +127,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
             duel.evader.copy(policy = all.evader(world))
           )
           val scalar =
-            Rollout(own.engagement, timing, all.link(world), PlantResponse(plant)).fly(all.key(world))
+            ScoredRollout(own.engagement, timing, all.link(world), PlantResponse(plant)).fly(all.key(world))
           assertEqualsDouble(flown.meanDistanceM(world), scalar.meanDistanceM, 1e-3)
 
   private object Sheltered extends Plant[PlaneReading]:

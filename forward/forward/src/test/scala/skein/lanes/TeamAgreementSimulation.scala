@@ -11,8 +11,8 @@ import skein.forward.{
   Rollout,
   VelocityResponses
 }
-import skein.lanes.policy.{TeamLanes, VehicleNumbers}
-import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, TimetableVehicles}
+import skein.lanes.policy.{LaneObservation, TeamLanes, VehicleNumbers}
+import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores}
 import skein.policy.{Action, Observation, Policy}
 import skein.scenario.{Crossing, Formation, Scenario, Surround}
 import skein.signal.SplitMix64
@@ -187,10 +187,9 @@ object TeamAgreementSimulation:
     ): Unit =
       def copied(from: Array[Float], at: Int) =
         java.util.Arrays.copyOfRange(from, at, at + TimetableKernel.WORLDS)
-      val fields   = Vector[TimetableVehicles => Array[Float]](_.seenX, _.seenY, _.seenVx, _.seenVy)
       val readings =
-        for field <- fields; vehicle <- all.indices
-        yield copied(field(all(vehicle).vehicles), views(view + vehicle) * TimetableKernel.WORLDS)
+        for field <- Vector.range(0, LaneObservation.READ); vehicle <- all.indices
+        yield copied(all(vehicle).vehicles.seen(field), views(view + vehicle) * TimetableKernel.WORLDS)
       val (cos, sin) = (direction._1.clone, direction._2.clone)
       super.decide(all, views, view, known, before, after, times, number)
       made += Made(

@@ -61,8 +61,8 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
         val from = views(view + vehicle) * worlds
         places += Array.tabulate(worlds): world =>
           (
-            all(vehicle).vehicles.seenX(from + world).toDouble,
-            all(vehicle).vehicles.seenY(from + world).toDouble
+            all(vehicle).vehicles.seen(0)(from + world).toDouble,
+            all(vehicle).vehicles.seen(1)(from + world).toDouble
           )
 
   private def scalar(of: Engagement, timing: LoopTiming, link: Delays, model: VelocityResponse, key: Int) =

@@ -7,13 +7,13 @@ import skein.forward.{
   LinkDelays,
   LoopTiming,
   PlantResponse,
-  Rollout,
+  ScoredRollout,
   Steering,
   VelocityResponse,
   VelocityResponses
 }
 import skein.identify.Tilting
-import skein.lanes.policy.LanePolicy
+import skein.lanes.LanePolicies.take
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
@@ -51,7 +51,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
       durationS: Double,
       model: VelocityResponse
   ): PairKernel =
-    val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
+    val (pursuers, evaders) = (LanePolicies.of(PaperPursuer()), LanePolicies.of(PaperEvader()))
     for world <- 0 until worlds do
       pursuers.take(world, pursuer(world))
       evaders.take(world, evader(world))
@@ -104,7 +104,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
         val key    = WorldRandom.key(3, 1, episode)
         val kernel = fly(timing, link, key, 5, model)
         for world <- 0 until worlds by 3 do
-          val scalar = Rollout(duel(world, 5).engagement, timing, link, model).fly(key, captureM)
+          val scalar = ScoredRollout(duel(world, 5).engagement, timing, link, model).fly(key, captureM)
           all += 1
           if (kernel(PairNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
             (kernel(PairNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&

@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Delays, Pair, LoopTiming, Rollout, VelocityResponses}
+import skein.forward.{DelayTable, Delays, Pair, LoopTiming, ScoredRollout, VelocityResponses}
 import skein.policy.{ChauffeurEvader, Policy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
@@ -46,7 +46,7 @@ class UnseenPolicySuite extends munit.FunSuite:
           short.evader.copy(policy = evader),
           short.durationS
         )
-        val scalar = Rollout(duel.engagement, timing, DelayTable.vpn, model).fly(worlds.key(world))
+        val scalar = ScoredRollout(duel.engagement, timing, DelayTable.vpn, model).fly(worlds.key(world))
         (flown.meanDistanceM(world) - scalar.meanDistanceM).abs max
           (flown.minDistanceM(world) - scalar.minDistanceM).abs max
           (flown.pursuerEffortRad(world) - scalar.pursuerEffortRad).abs

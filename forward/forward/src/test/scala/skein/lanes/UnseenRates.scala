@@ -1,11 +1,13 @@
 package skein.lanes
 
+import skein.formula.Trace
 import skein.forward.{DelayTable, Pair, LoopTiming, Rollout, VelocityResponses}
-import skein.lanes.policy.{LanePolicy, PolicyLanes}
-import skein.lanes.score.Scoreboard
+import skein.lanes.LanePolicies.take
+import skein.lanes.policy.PolicyLanes
+import skein.lanes.score.{Judged, ScoreLanes, Scoreboard}
 import skein.lanes.timetable.{Timetable, TimetableKernel}
 import skein.policy.PolicyFamily
-import skein.scenario.Reduction
+import skein.scenario.{Reduction, Separation}
 import skein.signal.SplitMix64
 
 /** Measures the speed of a search over policies that the product does not contain. Run: `forward/Test/runMain
@@ -26,18 +28,21 @@ import skein.signal.SplitMix64
 
   for _ <- 1 to rounds.headOption.getOrElse(2); (name, draw) <- ("paper" -> paper) +: UnseenPolicySuite.Unseen
   do
-    val random                   = SplitMix64(3)
-    val candidates               = Array.fill(PairKernels.WORLDS)(draw(random))
-    val lanes                    = LaneDynamics.of(model).fold(sys.error, identity)
-    val both                     = Vector.fill(2)(lanes)
-    val table                    = Timetable.of(both, 60, timing, DelayTable.vpn, 1)
-    val started                  = System.nanoTime
-    val pursuers                 = LanePolicy.of(candidates(0))
-    val compiledMs               = (System.nanoTime - started) / 1_000_000
-    val evaders                  = LanePolicy.of(UnseenPolicySuite.Evader)
-    val agents                   = Vector(Pair.paper.evader, Pair.paper.pursuer)
-    val members                  = Opponents.inEpisode(agents, both, Vector(evaders, pursuers), Map.empty)
-    val scores                   = Scoreboard.ofDistance(Reduction.Mean -> 50.1)
+    val random     = SplitMix64(3)
+    val candidates = Array.fill(PairKernels.WORLDS)(draw(random))
+    val lanes      = LaneDynamics.of(model).fold(sys.error, identity)
+    val both       = Vector.fill(2)(lanes)
+    val table      = Timetable.of(both, 60, timing, DelayTable.vpn, 1)
+    val started    = System.nanoTime
+    val pursuers   = LanePolicies.of(candidates(0))
+    val compiledMs = (System.nanoTime - started) / 1_000_000
+    val evaders    = LanePolicies.of(UnseenPolicySuite.Evader)
+    val agents     = Vector(Pair.paper.evader, Pair.paper.pursuer)
+    val members    = Opponents.inEpisode(agents, both, Vector(evaders, pursuers), Map.empty)
+    val scores     = Scoreboard(
+      ScoreLanes.of(Vector(Judged(Separation, Reduction.Mean, 50.1)), 2).fold(throw _, identity),
+      Vector(0, 0)
+    )
     val kernel                   = TimetableKernel(members.map(identity), scores)
     def fly(episodes: Int): Unit = for _ <- 1 to episodes do
       for world <- 0 until PairKernels.WORLDS do
@@ -55,7 +60,7 @@ import skein.signal.SplitMix64
       Rollout(duel.engagement, timing, DelayTable.vpn, model).fly(1): Unit
     scalar(150)
     val slow    = Vector.fill(3)(60 * 1200 / seconds(scalar(60))).max * 1e-6
-    val size    = PolicyLanes.get(candidates(0)).operations
+    val size    = Trace.needed(PolicyLanes.get(candidates(0)).outputs).count(_.args.nonEmpty)
     val witness = scores.values(0).map(_.toDouble).sum / PairKernels.WORLDS
     println(
       f"$name%-8s $rate%6.1f M/s  scalar $slow%.3f M/s  ${rate / slow}%5.0f times  $size%4d operations " +

@@ -1,6 +1,6 @@
 package skein.optimise
 
-import skein.forward.{DelayTable, LoopTiming, Pair, Rollout, VelocityResponses}
+import skein.forward.{DelayTable, LoopTiming, Pair, ScoredRollout, VelocityResponses}
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.policy.{PaperPursuer, Role}
 import skein.simd.WorldRandom
@@ -52,8 +52,8 @@ class ObjectiveSuite extends munit.FunSuite:
     val key      = WorldRandom.key(1, 0, 0)
     for pursuer <- pursuers do
       val own = duel.copy(pursuer = duel.pursuer.copy(policy = pursuer))
-      val one = Rollout(own.engagement, timing, DelayTable.direct, model).fly(key, 4.5)
-      val far = Rollout(own.engagement, timing, DelayTable.direct, model).fly(key, 6)
+      val one = ScoredRollout(own.engagement, timing, DelayTable.direct, model).fly(key, 4.5)
+      val far = ScoredRollout(own.engagement, timing, DelayTable.direct, model).fly(key, 6)
       def value(text: String, role: Role = Role.Pursuer) =
         val objective = read(text, role)
         val candidate = TeamCandidate(own.engagement, objective.judged(20, timing.periodS))

@@ -1,7 +1,7 @@
 package skein.optimise
 
 import java.util.concurrent.atomic.AtomicInteger
-import skein.forward.{DelayTable, LoopTiming, Pair, Rollout, VelocityResponses}
+import skein.forward.{DelayTable, LoopTiming, Pair, ScoredRollout, VelocityResponses}
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.policy.{PaperPursuer, PolicyFamily, Role}
 import skein.simd.WorldRandom
@@ -34,7 +34,7 @@ class PairSearchSimulation extends munit.FunSuite, Unhurried:
     for (tally, candidate) <- tallies.zip(candidates) do
       val pursuer = short.pursuer.copy(policy = PaperPursuer(candidate.head.toFloat))
       val rollout =
-        Rollout(short.copy(pursuer = pursuer).engagement, LoopTiming.Stream(), DelayTable.vpn, lag)
+        ScoredRollout(short.copy(pursuer = pursuer).engagement, LoopTiming.Stream(), DelayTable.vpn, lag)
       val reference = (0 until 30).map(episode => rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM)
       assertEqualsDouble(tally.mean, reference.sum / 30, 0.03)
 

@@ -1,7 +1,7 @@
 package skein.planning
 
 import skein.formula.ErrorBound
-import skein.lanes.{Bicycle, PairAgreement, Rolling, UnseenPolicySuite}
+import skein.lanes.{Bicycle, LanePolicies, PairAgreement, Rolling, UnseenPolicySuite}
 import skein.lanes.policy.PolicyLanes
 import skein.policy.{PaperEvader, Policy}
 import skein.scenario.Fence
@@ -116,7 +116,7 @@ class PlanKernelSuite extends munit.FunSuite:
       val nodes = form.outputs
       for
         (seen, step) <- log.seen.zipWithIndex.toSeq
-        inputs = form.inputsOf(seen, log.before(step))
+        inputs = LanePolicies.inputsOf(seen, log.before(step))
         bound  = ErrorBound.of(nodes, inputs, inputs.map(_ => off), form.parametersOf(opponent.policy))
         (node, near) <- bound.undecided(nodes)
       yield Jump(s"step $step, $node", near, Double.PositiveInfinity)

@@ -71,7 +71,6 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
         val value = argument match
           case buffer: GpuBuffer => arena.allocateFrom(JAVA_LONG, buffer.address)
           case whole: Int        => arena.allocateFrom(JAVA_INT, whole)
-          case number: Float     => arena.allocateFrom(JAVA_FLOAT, number)
           case other             => throw IllegalArgumentException(s"no kernel takes $other")
         places.setAtIndex(ADDRESS, i, value)
       val none = MemorySegment.NULL

@@ -37,7 +37,7 @@ private[skein] trait GpuBuffer extends AutoCloseable:
 private[skein] trait GpuKernel:
   /** Runs the kernel to its end.
     *
-    * @param arguments the arguments in the kernel's order, each a [[GpuBuffer]], an Int or a Float
+    * @param arguments the arguments in the kernel's order, each a [[GpuBuffer]] or an Int
     * @throws GpuFailure if the kernel does not finish
     */
   def apply(blocks: Int, threadsOfBlock: Int, arguments: Any*): Unit

@@ -80,7 +80,6 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   def argument(parameter: String): Int = parameters.collectFirst {
     case (`parameter`, Kind.Address) => result()(r => s"ld.param.u64 %rd$r, [$parameter]")
     case (`parameter`, Kind.Whole)   => result()(r => s"ld.param.u32 %r$r, [$parameter]")
-    case (`parameter`, Kind.Float)   => result()(r => s"ld.param.f32 %f$r, [$parameter]")
   }.getOrElse(throw new NoSuchElementException(s"$name has no parameter $parameter"))
 
   def load(base: Int, word: Int = 0, into: Int = fresh()): Int =
@@ -147,9 +146,8 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
 
 object Ptx:
   enum Kind:
-    case Address, Whole, Float
+    case Address, Whole
 
     private[gpu] def declared(name: String): String = this match
       case Address => s".param .u64 $name"
       case Whole   => s".param .u32 $name"
-      case Float   => s".param .f32 $name"

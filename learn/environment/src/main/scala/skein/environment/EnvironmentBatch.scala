@@ -7,7 +7,7 @@ import skein.lanes.{Engine, LearnerWorlds}
 import skein.policy.Policy
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
-import skein.units.Expect
+import skein.units.{Expect, eachBelow}
 
 /** Many episodes, simulated step by step. The caller decides for learners ([[EnvironmentSettings]]), at the
   * times at which the loop decides, on readings with the age that the link causes. Observations and actions
@@ -86,8 +86,7 @@ final class EnvironmentBatch private (
     */
   def step(): Unit =
     if !isReset then throw IllegalStateException("expected reset() before the first step()")
-    var i = 0
-    while i < groups.length do
+    eachBelow(groups.length): i =>
       val misfit = groups(i).misfit()
       if misfit >= 0 then
         throw IllegalArgumentException(
@@ -96,7 +95,6 @@ final class EnvironmentBatch private (
       val ended = groups(i).ended
       if ended >= 0 then
         throw IllegalStateException(s"environment $ended has ended; reset it before the next step()")
-      i += 1
     // A step lasts microseconds; the common pool distributes its parts without starting or waking a thread
     // for each.
     if groups.length < EnvironmentBatch.Together then groups.foreach(_.step())

@@ -2,6 +2,7 @@ package skein.environment
 
 import java.nio.{ByteBuffer, ByteOrder, FloatBuffer}
 import skein.policy.LearnerSpace
+import skein.units.eachBelow
 
 /** The memory that an environment batch shares with its caller: one block, in the machine's byte order. It
   * contains the following arrays one after the other, for A learners in the scenario's order and n
@@ -62,17 +63,13 @@ final class EnvironmentBuffers(
     val place = row * count + first
     if stride == 1 then to.put(place, from, at, some): Unit
     else
-      var i = 0
-      while i < some do
+      eachBelow(some): i =>
         to.put(place + i * stride, from(at + i)): Unit
-        i += 1
 
   /** Writes whether a learner decides now, in environments from `first` on, `stride` apart. */
   private[environment] def due(agent: Int, first: Int, stride: Int, some: Int, value: Boolean): Unit =
-    var i = 0
-    while i < some do
+    eachBelow(some): i =>
       dues.put(agent * count + first + i * stride, byte(value)): Unit
-      i += 1
 
   /** Reads a part of a row: environments from `first` on, `stride` apart. */
   private[environment] def read(
@@ -86,10 +83,8 @@ final class EnvironmentBuffers(
     val place = row * count + first
     if stride == 1 then from.get(place, into, 0, some): Unit
     else
-      var i = 0
-      while i < some do
+      eachBelow(some): i =>
         into(i) = from.get(place + i * stride)
-        i += 1
 
   /** Writes a learner's and its environment's state at the start of an episode, except its observation. */
   def begun(agent: Int, number: Int, distanceM: Float): Unit =

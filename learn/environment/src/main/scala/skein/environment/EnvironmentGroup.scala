@@ -3,6 +3,7 @@ package skein.environment
 import java.nio.FloatBuffer
 import skein.lanes.LearnerWorlds
 import skein.signal.SplitMix64
+import skein.units.eachBelow
 
 /** Environments that run simultaneously over one link: delays and losses of messages are equal in all of
   * them, and so is which readings are missing. Mutable; one thread at a time.
@@ -121,32 +122,24 @@ private final class EnvironmentGroup(
   def step(): Unit =
     if isOver then nextRun()
     else
-      var agent = 0
-      while agent < agents do
+      eachBelow(agents): agent =>
         if worlds.isDue(agent) then act(agent)
-        agent += 1
       worlds.decide()
       // Scores before the first decision count for the first step.
       if !isFirst then worlds.forgetScores()
       isFirst = false
       val goesOn = worlds.flyOn()
       isOver = !goesOn || worlds.scoredAtS + Tolerance >= settings.episodeS
-      agent = 0
-      while agent < agents do
+      eachBelow(agents): agent =>
         reward(agent)
-        agent += 1
       judge()
 
   private def act(agent: Int): Unit =
-    var component = 0
-    while component < components do
+    eachBelow(components): component =>
       val numbers = actions(agent)(component)
-      var world   = 0
-      while world < count do
+      eachBelow(count): world =>
         numbers(world) = math.max(-1f, math.min(1f, numbers(world))) * most(agent)(component)
-        world += 1
       worlds.act(agent, component, numbers)
-      component += 1
 
   /** Writes a learner's rewards and distances, and notes captures. */
   private def reward(agent: Int): Unit =
@@ -155,35 +148,27 @@ private final class EnvironmentGroup(
     // Nothing may have been scored yet.
     if !row(0).isNaN then into.write(into.distances, agent, first, stride, row, 0, count)
     java.util.Arrays.fill(cost, 0f)
-    var term  = 0
-    var world = 0
-    while term < weights(agent).length do
+    eachBelow(weights(agent).length): term =>
       val weight = weights(agent)(term)
       if weight != 0 then
         worlds.soFar(2 * apart + term, row)
-        world = 0
-        while world < count do
+        eachBelow(count): world =>
           cost(world) -= weight * row(world) / EnvironmentSettings.RewardM
-          world += 1
-      term += 1
     if agent == 0 then java.util.Arrays.fill(isCapture, false)
     if settings.captureRadiusM > 0 then
       val radiusM = settings.captureRadiusM.toFloat
       worlds.soFar(distance + 1, row)
-      world = 0
-      while world < count do
+      eachBelow(count): world =>
         if row(world) <= radiusM then
           isCapture(world) = true
           cost(world) += gains(agent)
-        world += 1
     into.write(into.rewards, agent, first, stride, cost, 0, count)
 
   /** Determines which episodes have ended. */
   private def judge(): Unit =
     val scoredAtS = worlds.scoredAtS
-    var world     = 0
     var again     = false
-    while world < count do
+    eachBelow(count): world =>
       val number = numberOf(world)
       into.time(number, scoredAtS - beganS(world))
       if isDone(world) then
@@ -197,7 +182,6 @@ private final class EnvironmentGroup(
         into.truncated(number, isOver && !isEnded)
         isDone(world) = isEnded || isOver
       again |= isDone(world)
-      world += 1
     autoreset match
       case Autoreset.SameStep if again =>
         showFinals()
@@ -244,11 +228,9 @@ private final class EnvironmentGroup(
     episodes(world) += 1
     beganS(world) = worlds.scoredAtS
     for agent <- 0 until agents do startM(agent * count + world) = starts.distanceM(vehicles(agent))
-    var vehicle = 0
-    while vehicle < starts.northM.length do
+    eachBelow(starts.northM.length): vehicle =>
       import starts.{eastM, headingRad, northM}
       worlds.restart(world, vehicle, northM(vehicle), eastM(vehicle), headingRad(vehicle))
-      vehicle += 1
     worlds.forgetScores(world)
 
   private def clear(world: Int): Unit =
@@ -270,19 +252,15 @@ private final class EnvironmentGroup(
 
   /** Writes the observations of the learners that are due; the others' stay unchanged. */
   private def show(to: FloatBuffer): Unit =
-    var agent = 0
-    while agent < agents do
+    eachBelow(agents): agent =>
       val isDue = worlds.isDue(agent)
       if isDue != wasDue(agent) then
         wasDue(agent) = isDue
         into.due(agent, first, stride, count, isDue)
       if isDue then
         worlds.observe(agent, seen)
-        var field = 0
-        while field < fields do
+        eachBelow(fields): field =>
           into.write(to, agent * fields + field, first, stride, seen, field * Most, count)
-          field += 1
-      agent += 1
 
   def close(): Unit = worlds.close()
 

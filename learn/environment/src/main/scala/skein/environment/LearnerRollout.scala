@@ -91,7 +91,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
         eastM = agents.map(_.startY)
         val rollout = Rollout(team.engagement.copy(agents = flown), side.timing, side.link, side.response)
         // More draws than keys, of which each needs a timetable.
-        rollout.fly(LearnerTeams.keyOf(draw), observer = scores, sensorSeed = Some(draw)): Unit
+        rollout.fly(LearnerTeams.keyOf(draw), observer = scores, sensorSeed = Some(draw))
         hasEnded = rollout.hasEnded
         due = Nobody
         suspend()

@@ -1,15 +1,14 @@
 package skein.environment
 
 import skein.scenario.{Positions, Quantity}
+import skein.units.eachFrom
 
 /** Distance of a vehicle from the nearest of some other vehicles, in the plane or in space, m. */
 private final class Nearest(self: Int, others: Array[Int], inSpace: Boolean) extends Quantity:
   def of(positions: Positions): Double =
     var least = distanceM(positions, others(0))
-    var i     = 1
-    while i < others.length do
+    eachFrom(1, others.length): i =>
       least = least.min(distanceM(positions, others(i)))
-      i += 1
     least
 
   private def distanceM(positions: Positions, other: Int) =

@@ -1,7 +1,7 @@
 package skein.environment
 
 import java.nio.{ByteBuffer, ByteOrder}
-import skein.forward.{Delays, Engagement, EpisodeOutcome, PlantResponse, Rollout}
+import skein.forward.{Delays, Engagement, EpisodeOutcome, PlantResponse, ScoredRollout}
 import skein.lanes.{LearnerTeams, TeamBatch, TeamCandidate, TeamWorlds}
 import skein.lanes.score.Judged
 import skein.policy.LearnerSpace
@@ -67,7 +67,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       def candidate(world: Int): TeamCandidate = team
     val flown = TeamBatch(config.timing, PlantResponse(ReducedModel.AirSimLag), 1).fly(worlds)
     (
-      Rollout(game, config.timing, config.link, PlantResponse(ReducedModel.AirSimLag)).fly(runKey),
+      ScoredRollout(game, config.timing, config.link, PlantResponse(ReducedModel.AirSimLag)).fly(runKey),
       flown.values(0)(0),
       flown.values(1)(0)
     )

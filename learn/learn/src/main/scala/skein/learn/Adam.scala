@@ -1,6 +1,7 @@
 package skein.learn
 
 import java.io.{DataInput, DataOutput}
+import skein.units.eachBelow
 
 /** Adam: gradient steps, each parameter's with its own scale. Source: Kingma and Ba, "Adam: a method for
   * stochastic optimization", 2015, algorithm 1, with their defaults.
@@ -19,13 +20,11 @@ final class Adam(size: Int, val rate: Double) extends Saved:
     val small        = (Adam.Small * unbiasRoot).toFloat
     val (b1, b2)     = (Adam.MeanDecay.toFloat, Adam.SquaresDecay.toFloat)
     val (new1, new2) = ((1 - Adam.MeanDecay).toFloat, (1 - Adam.SquaresDecay).toFloat)
-    var i            = 0
-    while i < size do
+    eachBelow(size): i =>
       val g = gradient(i)
       m(i) = b1 * m(i) + new1 * g
       v(i) = b2 * v(i) + new2 * g * g
       parameters(i) = parameters(i) - by * m(i) / (Math.sqrt(v(i).toDouble).toFloat + small)
-      i += 1
 
   def save(out: DataOutput): Unit =
     out.writeLong(steps)

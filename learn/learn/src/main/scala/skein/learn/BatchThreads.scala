@@ -2,6 +2,7 @@ package skein.learn
 
 import java.util.concurrent.ForkJoinPool
 import java.util.stream.IntStream
+import skein.units.{eachBelow, eachFrom}
 
 /** Threads that share a batch's rows, in parts of a fixed number of rows, so that sums over parts have equal
   * bits on any number of threads. A batch takes less time than starting threads, so they wait here for the
@@ -43,12 +44,8 @@ private[learn] final class Gradient(size: Int, rows: Int):
   /** Adds all parts in order and returns their sum. */
   def sum(): Array[Float] =
     val total = parts(0)
-    var part  = 1
-    while part < parts.length do
+    eachFrom(1, parts.length): part =>
       val more = parts(part)
-      var i    = 0
-      while i < size do
+      eachBelow(size): i =>
         total(i) = total(i) + more(i)
-        i += 1
-      part += 1
     total

@@ -2,6 +2,7 @@ package skein.learn
 
 import java.io.{DataInput, DataOutput}
 import skein.signal.SplitMix64
+import skein.units.{eachBelow, eachFrom}
 
 /** The value of an action in a state, by one network or the minimum value of several. Copies of the networks
   * follow them slowly and give the target values.
@@ -31,18 +32,14 @@ private[learn] final class Critics(
 
   private def feed(seen: Array[Float], chosen: Array[Float], from: Int, until: Int): Unit =
     for pass <- passes do
-      var row = from
-      while row < until do
+      eachFrom(from, until): row =>
         System.arraycopy(seen, row * observations, pass.input, row * inputs, observations)
         System.arraycopy(chosen, row * actions, pass.input, row * inputs + observations, actions)
-        row += 1
 
   private def least(row: Int): Float =
     var value = passes(0).output(row)
-    var other = 1
-    while other < passes.length do
+    eachFrom(1, passes.length): other =>
       value = Math.min(value, passes(other).output(row))
-      other += 1
     value
 
   /** Values of the reached states by the slow copies. */
@@ -62,10 +59,8 @@ private[learn] final class Critics(
     feed(batch.seen, batch.actions, from, until)
     for ((pass, network), gradient) <- passes.zip(networks).zip(gradients) do
       pass.forward(network, from, until)
-      var row = from
-      while row < until do
+      eachFrom(from, until): row =>
         pass.outputError(row) = (pass.output(row) - wanted(row)) / rows
-        row += 1
       pass.backward(network, from, until, gradient.of(part))
 
   def step(): Unit =
@@ -77,25 +72,19 @@ private[learn] final class Critics(
   def slopes(seen: Array[Float], chosen: Array[Float], into: Array[Float], from: Int, until: Int): Unit =
     feed(seen, chosen, from, until)
     for (pass, network) <- passes.zip(networks) do pass.forward(network, from, until)
-    var row = from
-    while row < until do
+    eachFrom(from, until): row =>
       val value = least(row)
       var taken = false
       for pass <- passes do
         val counts = !taken && pass.output(row) == value
         pass.outputError(row) = if counts then 1 else 0
         taken |= counts
-      row += 1
     for (pass, network) <- passes.zip(networks) do pass.backwardToInput(network, from, until)
-    row = from
-    while row < until do
-      var action = 0
-      while action < actions do
+    eachFrom(from, until): row =>
+      eachBelow(actions): action =>
         var sum = 0f
         for pass <- passes do sum += pass.inputError(row * inputs + observations + action)
         into(row * actions + action) = sum
-        action += 1
-      row += 1
 
   def follow(): Unit =
     for (target, network) <- targets.zip(networks) do target.follow(network, Critics.Rate)

@@ -1,5 +1,7 @@
 package skein.learn
 
+import skein.units.eachFrom
+
 /** Deep deterministic policy gradient: one critic, a policy that ascends its gradient, slow copies of both;
   * it explores with normal noise. Source: Lillicrap, Hunt, Pritzel, Heess, Erez, Tassa, Silver, Wierstra,
   * "Continuous control with deep reinforcement learning", arXiv:1509.02971; the noise has no memory, as in
@@ -38,20 +40,16 @@ final class Ddpg(
     workers.share(rows): (part, from, until) =>
       choose(target, batch.reached, from, until)
       critics.valueReached(batch.reached, chosen, wanted, from, until)
-      var row = from
-      while row < until do
+      eachFrom(from, until): row =>
         wanted(row) = (batch.rewards(row) + settings.discount * batch.goesOn(row) * wanted(row)).toFloat
-        row += 1
       critics.criticise(batch, wanted, part, from, until)
     critics.step()
     gradient.clear()
     workers.share(rows): (part, from, until) =>
       choose(actor, batch.seen, from, until)
       critics.slopes(batch.seen, chosen, slopes, from, until)
-      var at = from * actions
-      while at < until * actions do
+      eachFrom(from * actions, until * actions): at =>
         pass.outputError(at) = -slopes(at) * (1 - chosen(at) * chosen(at)) / rows
-        at += 1
       pass.backward(actor, from, until, gradient.of(part))
     optimiser.step(actor.parameters, gradient.sum())
     actor.changed()
@@ -60,10 +58,8 @@ final class Ddpg(
 
   private def choose(by: Network, seen: Array[Float], from: Int, until: Int): Unit =
     pass.forward(by, seen, from, until)
-    var at = from * actions
-    while at < until * actions do
+    eachFrom(from * actions, until * actions): at =>
       chosen(at) = StrictMath.tanh(pass.output(at)).toFloat
-      at += 1
 
 private object Ddpg:
   /** Standard deviation of the exploration noise. */

@@ -33,7 +33,15 @@ final class LearnerInFlight private (
     learner.begin(SplitMix64.seedOf(seed, lessons) & Long.MaxValue)
     val versions = learned / transitionsPerVersion
     for transition <- transitions do
-      learner.replay.add(row(transition.seen), transition.shares.map(_.toFloat).toArray, reached(transition))
+      val loss = (transition.distanceM * SideTask.RewardPerM).toFloat
+      // A flight is one episode, and its end is a truncation.
+      learner.replay.add(
+        row(transition.seen),
+        transition.shares.map(_.toFloat).toArray,
+        row(transition.reached),
+        Array(if role == Role.Pursuer then -loss else loss),
+        Array(false)
+      )
       learned += 1
       if learner.replay.size >= learner.batch.count then
         due += updates
@@ -46,31 +54,7 @@ final class LearnerInFlight private (
   private def row(numbers: Vector[Double]) =
     numbers.lazyZip(scales).map((number, scale) => number.toFloat / scale).toArray
 
-  private def reached(transition: Transition): Task =
-    val loss = (transition.distanceM * SideTask.RewardPerM).toFloat
-    LearnerInFlight.OneStep(
-      space.outputs,
-      row(transition.reached),
-      if role == Role.Pursuer then -loss else loss
-    )
-
 object LearnerInFlight:
-
-  /** The result of one decision, as a task's step. A flight is one episode; its end counts as truncation, not
-    * as termination.
-    */
-  private final class OneStep(val actions: Int, val reached: Array[Float], reward: Float)
-      extends Task:
-    def count: Int                               = 1
-    def observations: Int                        = reached.length
-    def seen: Array[Float]                       = reached
-    val rewards: Array[Float]                    = Array(reward)
-    val terminated: Array[Boolean]               = Array(false)
-    def ended: Array[Boolean]                    = terminated
-    def begin(round: Long, actor: Network): Unit = none
-    def step(acts: Array[Float]): Unit           = none
-    private def none                             = throw UnsupportedOperationException("one step of a flight")
-
   /** Restores a stored learner.
     *
     * @param load fills it with the stored state, if there is one

@@ -2,6 +2,7 @@ package skein.learn
 
 import java.io.{DataInput, DataOutput}
 import skein.signal.SplitMix64
+import skein.units.{eachBelow, eachFrom}
 
 /** A dense network: hidden layers with rectifiers (negative values become 0), and linear outputs. Mutable.
   *
@@ -37,14 +38,10 @@ final class Network(val widths: Vector[Int]) extends Saved:
   def changed(): Unit =
     for layer <- 0 until layers do
       val (into, ins, outs) = (turned(layer), widths(layer), widths(layer + 1))
-      var i                 = 0
-      while i < ins do
+      eachBelow(ins): i =>
         val from = weightsAt(layer) + i * outs
-        var j    = 0
-        while j < outs do
+        eachBelow(outs): j =>
           into(j * ins + i) = parameters(from + j)
-          j += 1
-        i += 1
 
   /** Draws all parameters of a layer uniformly from ± 1 / √inputs.
     *
@@ -70,10 +67,8 @@ final class Network(val widths: Vector[Int]) extends Saved:
   /** Moves the parameters towards another network's by the fraction `rate`. */
   def follow(other: Network, rate: Float): Unit =
     val (own, its) = (parameters, other.parameters)
-    var i          = 0
-    while i < own.length do
+    eachBelow(own.length): i =>
       own(i) = own(i) + rate * (its(i) - own(i))
-      i += 1
     changed()
 
   def isFinite: Boolean = parameters.forall(_.isFinite)
@@ -114,14 +109,11 @@ final class Pass(widths: Vector[Int], val rows: Int):
 
   /** @param until the row after the last */
   def forward(network: Network, from: Int, until: Int): Unit =
-    var layer = 0
-    while layer < layers do
+    eachBelow(layers): layer =>
       val (ins, outs) = (widths(layer), widths(layer + 1))
       val out         = activations(layer + 1)
-      var row         = from
-      while row < until do
+      eachFrom(from, until): row =>
         System.arraycopy(network.parameters, network.biasesAt(layer), out, row * outs, outs)
-        row += 1
       val (x, weightsAt) = (activations(layer), network.weightsAt(layer))
       DenseKernel.addProduct(
         until - from,
@@ -137,12 +129,9 @@ final class Pass(widths: Vector[Int], val rows: Int):
         from * outs
       )
       if layer < layers - 1 then
-        var i   = from * outs
         val end = until * outs
-        while i < end do
+        eachFrom(from * outs, end): i =>
           out(i) = Math.max(out(i), 0f)
-          i += 1
-      layer += 1
 
   /** Computes derivatives after [[forward]].
     *
@@ -168,13 +157,9 @@ final class Pass(widths: Vector[Int], val rows: Int):
         at
       )
       val biases = network.biasesAt(layer)
-      var row    = from
-      while row < until do
-        var j = 0
-        while j < outs do
+      eachFrom(from, until): row =>
+        eachBelow(outs): j =>
           gradient(biases + j) += error(row * outs + j)
-          j += 1
-        row += 1
 
   /** Computes the derivatives of the inputs only. */
   def backwardToInput(network: Network, from: Int, until: Int): Unit =
@@ -188,11 +173,9 @@ final class Pass(widths: Vector[Int], val rows: Int):
       if layer > 0 then
         toInputs(network, layer, from, until)
         val (x, into) = (activations(layer), errors(layer))
-        var i         = from * widths(layer)
         val end       = until * widths(layer)
-        while i < end do
+        eachFrom(from * widths(layer), end): i =>
           if x(i) <= 0 then into(i) = 0
-          i += 1
       layer -= 1
 
   private def toInputs(network: Network, layer: Int, from: Int, until: Int): Unit =

@@ -1,6 +1,7 @@
 package skein.learn
 
 import skein.signal.{NormalQuantile, SplitMix64}
+import skein.units.eachBelow
 
 private[learn] object Noise:
   private val Step = 1.0 / (1L << 53)
@@ -9,7 +10,5 @@ private[learn] object Noise:
   def normal(random: SplitMix64): Double = NormalQuantile(((random.nextLong() >>> 11) + 0.5) * Step)
 
   def fill(into: Array[Float], random: SplitMix64): Unit =
-    var i = 0
-    while i < into.length do
+    eachBelow(into.length): i =>
       into(i) = normal(random).toFloat
-      i += 1

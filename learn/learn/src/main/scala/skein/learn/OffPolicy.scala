@@ -44,7 +44,7 @@ private[learn] abstract class OffPolicy(
         into(row * actions + action) = tried(deciding.output, row * actor.outputs, action)
 
   def learn(seen: Array[Float], chosen: Array[Float], task: Task): Unit =
-    replay.add(seen, chosen, task)
+    replay.add(seen, chosen, task.reached, task.rewards, task.terminated)
     steps += task.count
     if steps >= settings.randomSteps && replay.size >= rows then
       val due = ((steps - settings.randomSteps) * settings.updatesPerStep).toLong

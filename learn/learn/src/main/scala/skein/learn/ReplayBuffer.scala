@@ -2,6 +2,7 @@ package skein.learn
 
 import java.io.{DataInput, DataOutput, IOException}
 import skein.signal.SplitMix64
+import skein.units.eachBelow
 
 /** The newest transitions, from which batches are drawn. */
 final class ReplayBuffer(observations: Int, actions: Int, capacity: Int) extends Saved:
@@ -11,30 +12,32 @@ final class ReplayBuffer(observations: Int, actions: Int, capacity: Int) extends
 
   def size: Int = held
 
-  /** Adds a transition from a row of each array. */
-  def add(seen: Array[Float], chosen: Array[Float], task: Task): Unit =
-    var row = 0
-    while row < task.count do
+  /** Adds transitions, each from a row of each array. */
+  def add(
+      seen: Array[Float],
+      chosen: Array[Float],
+      reached: Array[Float],
+      rewards: Array[Float],
+      terminated: Array[Boolean]
+  ): Unit =
+    eachBelow(rewards.length): row =>
       System.arraycopy(seen, row * observations, all.seen, next * observations, observations)
       System.arraycopy(chosen, row * actions, all.actions, next * actions, actions)
-      System.arraycopy(task.reached, row * observations, all.reached, next * observations, observations)
-      all.rewards(next) = task.rewards(row)
-      all.goesOn(next) = if task.terminated(row) then 0 else 1
+      System.arraycopy(reached, row * observations, all.reached, next * observations, observations)
+      all.rewards(next) = rewards(row)
+      all.goesOn(next) = if terminated(row) then 0 else 1
       next = if next + 1 == capacity then 0 else next + 1
       held = (held + 1).min(capacity)
-      row += 1
 
   /** Draws transitions uniformly, with replacement. */
   def draw(into: Transitions, random: SplitMix64): Unit =
-    var row = 0
-    while row < into.count do
+    eachBelow(into.count): row =>
       val from = random.nextInt(held)
       System.arraycopy(all.seen, from * observations, into.seen, row * observations, observations)
       System.arraycopy(all.actions, from * actions, into.actions, row * actions, actions)
       System.arraycopy(all.reached, from * observations, into.reached, row * observations, observations)
       into.rewards(row) = all.rewards(from)
       into.goesOn(row) = all.goesOn(from)
-      row += 1
 
   def save(out: DataOutput): Unit =
     out.writeInt(next)

@@ -1,6 +1,7 @@
 package skein.learn
 
 import java.io.{DataInput, DataOutput}
+import skein.units.{eachBelow, eachFrom}
 
 /** Soft actor-critic: two critics, and a stochastic policy that is rewarded for its entropy, with an adaptive
   * temperature. Source: Haarnoja, Zhou, Hartikainen, Tucker, Ha, Tan, Kumar, Zhu, Gupta, Abbeel, Levine,
@@ -50,41 +51,33 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
   /** Draws actions for rows of observations, with their log-likelihoods. */
   private def draw(seen: Array[Float], from: Int, until: Int): Unit =
     pass.forward(actor, seen, from, until)
-    var row = from
-    while row < until do
-      var log    = 0.0
-      var action = 0
-      while action < actions do
+    eachFrom(from, until): row =>
+      var log = 0.0
+      eachBelow(actions): action =>
         val at       = row * actions + action
         val logWidth = logDeviation(pass.output(row * 2 * actions + actions + action))
         val drawn    = noise(at).toDouble
         val raw      = pass.output(row * 2 * actions + action) + StrictMath.exp(logWidth) * drawn
         chosen(at) = StrictMath.tanh(raw).toFloat
         log += -0.5 * drawn * drawn - logWidth - HalfLog2Pi - logSquash(raw)
-        action += 1
       logs(row) = log.toFloat
-      row += 1
 
   /** Computes the critics' target values for a part of the batch. */
   private[learn] def want(from: Int, until: Int): Unit =
     draw(batch.reached, from, until)
     critics.valueReached(batch.reached, chosen, wanted, from, until)
     val alpha = temperature.value
-    var row   = from
-    while row < until do
+    eachFrom(from, until): row =>
       wanted(row) = (batch.rewards(row) +
         settings.discount * batch.goesOn(row) * (wanted(row) - alpha * logs(row))).toFloat
-      row += 1
 
   /** The gradient of temperature times log-likelihood, minus value. */
   private[learn] def improve(part: Int, from: Int, until: Int): Unit =
     draw(batch.seen, from, until)
     critics.slopes(batch.seen, chosen, slopes, from, until)
     val alpha = temperature.value
-    var row   = from
-    while row < until do
-      var action = 0
-      while action < actions do
+    eachFrom(from, until): row =>
+      eachBelow(actions): action =>
         val at    = row * actions + action
         val mean  = row * 2 * actions + action
         val share = chosen(at).toDouble
@@ -94,8 +87,6 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
         val byWidth = byRaw * StrictMath.exp(logDeviation(output)) * noise(at) - alpha
         pass.outputError(mean) = (byRaw / rows).toFloat
         pass.outputError(mean + actions) = (byWidth * logDeviationSlope(output) / rows).toFloat
-        action += 1
-      row += 1
     pass.backward(actor, from, until, gradient.of(part))
 
 private[learn] object Sac:

@@ -6,6 +6,7 @@ import skein.policy.{LearnedPolicy, LearnerSpace, PolicyFamily, Role}
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.signal.SplitMix64
+import skein.units.eachBelow
 
 /** A side of the duel or of another scenario as a learning task, under the loop's timing. Observations are
   * scaled as [[LearnerSpace]] states, and rewards so that a policy's discounted return is about 1. If a side
@@ -57,10 +58,8 @@ final class SideTask private (
     for number <- 0 until count do copyRow(from, into, number)
 
   private def copyRow(from: java.nio.FloatBuffer, into: Array[Float], number: Int): Unit =
-    var field = 0
-    while field < observations do
+    eachBelow(observations): field =>
       into(number * observations + field) = from.get(field * count + number) / scales(field)
-      field += 1
 
 object SideTask:
   private val RewardScale = 0.1f

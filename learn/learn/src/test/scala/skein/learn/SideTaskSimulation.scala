@@ -8,10 +8,9 @@ import skein.forward.{
   LinkDelays,
   LoopTiming,
   PlantResponse,
-  Rollout,
   SpatialResponse
 }
-import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
+import skein.lanes.{ScalarTeam, TeamBatch, TeamCandidate, TeamWorlds}
 import skein.lanes.score.Judged
 import skein.policy.*
 import skein.scenario.{PaperDuel, Positions, Quantity, Reduction, Scenarios, Separation}
@@ -62,9 +61,10 @@ class SideTaskSimulation extends munit.FunSuite:
       val settings = EnvironmentSettings(learners = side, link = "none", episodeS = 20)
       val reward   = episode(SideTask.of(settings, None, 1, 1).fold(fail(_), identity), actor)
       val both     = game.flownBy(if side == "pursuer" then Role.Pursuer else Role.Evader, policy)
-      val flown    = Rollout(both, LoopTiming.Stream(), none, PlantResponse(ReducedModel.AirSimLag)).fly(1)
+      val team     = TeamCandidate(both, Vector(Judged(Separation, Reduction.Mean, 0)))
+      val flownM   = scalar.fly(team, none, 1)(0)
       val mean     = math.abs(reward) * 100 / 200
-      assertEqualsDouble(mean, flown.meanDistanceM, 0.05)
+      assertEqualsDouble(mean, flownM, 0.05)
 
   test("a climbing pursuer's episode equals that of its policy, with SIMD and by the scalar engine"):
     val actor    = Network(LearnerSpace.Climbing.inputs +: Vector(8) :+ 4).draw(SplitMix64(3))
@@ -91,10 +91,11 @@ class SideTaskSimulation extends munit.FunSuite:
     val worlds  = OneTeam(team, 4, DelayTable.vpn)
     val batch   = TeamBatch(LoopTiming.Stream(), PlantResponse(ReducedModel.AirSimLag), 1)
     assert(batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn)).isFast)
-    val flown   = batch.fly(worlds)
-    val rollout = Rollout(pursued, LoopTiming.Stream(), DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
+    val flown = batch.fly(worlds)
     for world <- 0 until 4 do
-      assertEqualsDouble(flown.values(0)(world).toDouble, rollout.fly(world).meanDistanceM, 0.05)
+      assertEqualsDouble(flown.values(0)(world).toDouble, scalar.fly(team, DelayTable.vpn, world)(0), 0.05)
+
+  private def scalar = ScalarTeam(LoopTiming.Stream(), PlantResponse(ReducedModel.AirSimLag))
 
   private final class OneTeam(team: TeamCandidate, val size: Int, over: Delays) extends TeamWorlds:
     override def shareEpisodes               = true

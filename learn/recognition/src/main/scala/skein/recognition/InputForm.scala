@@ -2,6 +2,7 @@ package skein.recognition
 
 import java.nio.ByteBuffer
 import skein.airsim.{Image, Pixels}
+import skein.units.eachBelow
 
 /** Converts an image to the tensor 1 × 3 × height × width that a model was trained on: the nearest pixel for
   * each element, (value − mean) · scale for each channel.
@@ -35,14 +36,10 @@ final case class InputForm(
       val scales = Array(scale._1, scale._2, scale._3)
       for channel <- 0 until 3 do
         val byte = if redFirst then 2 - channel else channel
-        var y    = 0
-        while y < height do
+        eachBelow(height): y =>
           val row = (2L * y + 1) * imageHeight / (2L * height) * imageWidth
-          var x   = 0
-          while x < width do
+          eachBelow(width): x =>
             val column = (2L * x + 1) * imageWidth / (2L * width)
             val value  = bgr.get((3 * (row + column)).toInt + byte) & 0xff
             values(channel * plane + y * width + x) = (value - means(channel)) * scales(channel)
-            x += 1
-          y += 1
       Right(values)

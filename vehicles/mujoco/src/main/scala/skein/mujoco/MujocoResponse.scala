@@ -48,15 +48,4 @@ private[mujoco] final class MujocoVehicles(model: MujocoModel, vehicles: Int) ex
       bodies.end(place, states(place), setpoints(place), Environment.Calm, controller)
       place += 1
 
-  def x(place: Int): Double  = states(place).x
-  def y(place: Int): Double  = states(place).y
-  def z(place: Int): Double  = states(place).z
-  def vx(place: Int): Double = states(place).vx
-  def vy(place: Int): Double = states(place).vy
-  def vz(place: Int): Double = states(place).vz
-  def ax(place: Int): Double = states(place).ax
-  def ay(place: Int): Double = states(place).ay
-  def az(place: Int): Double = states(place).az
-
-  def orientation(place: Int): Quaternion     = states(place).orientation
-  def angularVelocityFrd(place: Int): Vector3 = states(place).angularVelocityFrd
+  def read(place: Int, into: QuadrotorState): Unit = into.copyFrom(states(place))

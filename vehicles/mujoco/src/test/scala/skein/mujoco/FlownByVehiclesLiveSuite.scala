@@ -40,9 +40,8 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
       assertEquals(engine, "vehicles side by side; their loops by the scalar engine", told)
       val flown = batch.fly(all).values(0)
       for world <- 0 until all.size do
-        val scalar =
-          Rollout(all.candidate(world).engagement, timing, DelayTable.vpn, model).fly(all.key(world))
-        assertEquals(flown(world), scalar.meanDistanceM.toFloat, s"$told, world $world")
+        val scalar = ScalarTeam(timing, model).fly(all.candidate(world), DelayTable.vpn, all.key(world))(0)
+        assertEquals(flown(world), scalar.toFloat, s"$told, world $world")
 
   test("teams are simulated vehicle by vehicle under every loop, with the scalar engine's bits"):
     assumeMujoco()

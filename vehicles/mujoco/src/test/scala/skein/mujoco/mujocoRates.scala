@@ -4,6 +4,7 @@ import java.lang.foreign.ValueLayout.JAVA_DOUBLE
 import java.lang.foreign.Arena
 import java.nio.file.Path
 import skein.units.Decimals.fixed
+import skein.vehicle.QuadrotorState
 
 /** Steps a second on one thread: vehicles of a model with their flight controllers and a new velocity every
   * 100 ms, compared with MuJoCo's own batch, which makes equally many steps in one call, with rotor-like
@@ -45,8 +46,10 @@ import skein.units.Decimals.fixed
 
   val rates = Vector.fill(rounds)((rate(flown()), rate(rolledOut())))
   val best  = (rates.map(_._1).max, rates.map(_._2).max)
+  val first = QuadrotorState()
+  ours.read(0, first)
   println(
     s"$file, $vehicles vehicles, $steps steps, best of $rounds: bodies with controllers " +
       s"${best._1.round} /s, mjb_rollout ${best._2.round} /s, " +
-      s"${(100 * best._1 / best._2).fixed(1)} %; witness ${ours.x(0)}, ${batch(0, model.body.place.at + 2)}"
+      s"${(100 * best._1 / best._2).fixed(1)} %; witness ${first.x}, ${batch(0, model.body.place.at + 2)}"
   )

@@ -139,14 +139,8 @@ public abstract class LaneVehicles {
           state[SEEN_Z + i] = startZ[i];
           state[SEEN_VZ + i] = 0f;
         }
-    sensors.add(LaneSensors.NORTH, sensedNs, from, to, state, SEEN_X);
-    sensors.add(LaneSensors.EAST, sensedNs, from, to, state, SEEN_Y);
-    if (inSpace) sensors.add(LaneSensors.DOWN, sensedNs, from, to, state, SEEN_Z);
-    // In space, velocities are always read.
-    if (!withVelocity && !inSpace) return;
-    sensors.add(LaneSensors.NORTH_MPS, sensedNs, from, to, state, SEEN_VX);
-    sensors.add(LaneSensors.EAST_MPS, sensedNs, from, to, state, SEEN_VY);
-    if (inSpace) sensors.add(LaneSensors.DOWN_MPS, sensedNs, from, to, state, SEEN_VZ);
+    for (int read = 0; read < LaneSensors.count(withVelocity, inSpace); read++)
+      sensors.add(LaneSensors.componentOf(read), sensedNs, from, to, state, SEEN_X + read * WORLDS);
   }
 
   /** Whether the vehicles' plant has a vertical part. */

@@ -8,6 +8,7 @@ import static skein.simd.LaneNormals.MULTIPLIER_2;
 
 import java.util.Arrays;
 import jdk.incubator.vector.LongVector;
+import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 import skein.signal.SplitMix64;
 import skein.simd.LaneNormals;
@@ -25,6 +26,19 @@ public final class LaneSensors {
   public static final int NORTH = 0, EAST = 1, DOWN = 2, NORTH_MPS = 3, EAST_MPS = 4, DOWN_MPS = 5;
 
   private static final int COMPONENTS = 6, AXES = 3;
+
+  private static final int[] OF_READINGS = {NORTH, EAST, NORTH_MPS, EAST_MPS, DOWN, DOWN_MPS};
+
+  /** The error of a component of readings, in the order of {@link LaneObservation#X} and the following. */
+  public static int componentOf(int read) {
+    return OF_READINGS[read];
+  }
+
+  /** Number of components that are read, the first of {@link #componentOf}. */
+  public static int count(boolean withVelocity, boolean inSpace) {
+    // In space, velocities are always read.
+    return inSpace ? LaneObservation.IN_SPACE : withVelocity ? LaneObservation.READ : LaneObservation.VX;
+  }
 
   private static final long GAMMA = SplitMix64.Gamma();
 

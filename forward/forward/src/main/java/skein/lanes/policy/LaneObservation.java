@@ -1,10 +1,7 @@
 package skein.lanes.policy;
 
-import static skein.simd.LaneMath.LANES;
-import static skein.simd.LaneMath.SPECIES;
 
 import java.util.Arrays;
-import jdk.incubator.vector.FloatVector;
 import skein.simd.LaneFunction;
 
 /** The observations of many worlds' policies at a decision: see {@link OpponentFormula}. Refers to
@@ -58,13 +55,5 @@ public final class LaneObservation {
   /** The opponent's state relative to this vehicle, which is at 0. */
   public void seeFromOwn(int what, float[] difference) {
     see(what, difference, 0, ZEROS, 0);
-  }
-
-  /** The opponent's reading minus this vehicle's, of one row. */
-  public void difference(int what, float[] into) {
-    for (int i = 0; i < WORLDS; i += LANES)
-      FloatVector.fromArray(SPECIES, opponent[what], opponentAt[what] + i)
-          .sub(FloatVector.fromArray(SPECIES, own[what], ownAt[what] + i))
-          .intoArray(into, i);
   }
 }

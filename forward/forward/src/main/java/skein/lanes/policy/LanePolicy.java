@@ -5,7 +5,6 @@ import static skein.simd.LaneMath.SPECIES;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
-import skein.policy.Policy;
 import skein.simd.LaneFunction;
 
 /** Policies of one form in many worlds, each with its own parameters, compiled from the policy itself ({@link
@@ -69,34 +68,6 @@ public class LanePolicy {
     newMemory = new float[initial.length];
   }
 
-  public LanePolicy(PolicyLanes form) {
-    this(form, true);
-  }
-
-  /** Makes lanes for policies of this policy's form, which must be a formula. */
-  public static LanePolicy of(Policy policy) {
-    return of(policy, true);
-  }
-
-  public static LanePolicy of(Policy policy, boolean withEffort) {
-    return new LanePolicy(PolicyLanes.get(policy), withEffort);
-  }
-
-  /** Sets a world's policy parameters; the policy must be of this form. */
-  public void take(int world, Policy policy) {
-    if (!form.fits(policy)) throw new IllegalArgumentException(policy + " is of another form");
-    put(world, policy);
-  }
-
-  /** Sets a world's parameters of a policy that is known to be of this form. */
-  public void put(int world, Policy policy) {
-    double[] values = form.parametersOf(policy);
-    for (int i = 0; i < values.length; i++) parameters[place(i, world)] = (float) values[i];
-    double[] remembered = form.initialOf(policy);
-    for (int i = 0; i < remembered.length; i++)
-      initial[i * WORLDS + world] = (float) remembered[i];
-  }
-
   /** Sets the parameters and initial memory of a world's policy, which must be of this form. */
   public void put(int world, VehicleNumbers numbers) {
     float[] values = numbers.policy();
@@ -107,12 +78,6 @@ public class LanePolicy {
 
   private int place(int parameter, int world) {
     return LaneFunction.place(parameter, world, form.parameters());
-  }
-
-  /** Copies a world's policy parameters to another world. */
-  public void copy(int from, int to) {
-    for (int i = 0; i < form.parameters(); i++) parameters[place(i, to)] = parameters[place(i, from)];
-    for (int i = 0; i < initial.length; i += WORLDS) initial[i + to] = initial[i + from];
   }
 
   /** Whether its policies use the velocities of the observation. */
@@ -222,9 +187,9 @@ public class LanePolicy {
           .intoArray(effort, i);
   }
 
-  /** Stores the decisions of worlds whose time, from an offset on, is earlier than another. */
-  public void rememberBefore(int[] times, int from, int before) {
+  /** Stores the decisions of worlds whose time is earlier than another. */
+  public void rememberBefore(int[] times, int before) {
     for (int i = 0; i < memory.length; i++)
-      if (times[from + i % WORLDS] < before) memory[i] = newMemory[i];
+      if (times[i % WORLDS] < before) memory[i] = newMemory[i];
   }
 }

@@ -6,6 +6,7 @@ import static skein.simd.LaneMath.constant;
 
 import jdk.incubator.vector.FloatVector;
 import skein.lanes.policy.Directions;
+import skein.lanes.policy.LaneObservation;
 import skein.vehicle.PlantModel;
 
 /** Predicts with a first-order lag. The model is linear: a prediction is the reading's position, plus its
@@ -28,13 +29,16 @@ public final class PredictedLagVehicles extends PredictedVehicles {
 
   @Override
   void predict(
-      TimetableReadings read,
+      float[][] seen,
       Directions sent,
       int reading,
       int into,
       Propagation propagation,
       boolean withVelocity) {
-    float[] seenX = read.seenX, seenY = read.seenY, seenVx = read.seenVx, seenVy = read.seenVy;
+    float[] seenX = seen[LaneObservation.X],
+        seenY = seen[LaneObservation.Y],
+        seenVx = seen[LaneObservation.VX],
+        seenVy = seen[LaneObservation.VY];
     float carried = propagation.first(), kept = propagation.second();
     carry(seenX, seenVx, carried, seenX, reading, into);
     carry(seenY, seenVy, carried, seenY, reading, into);
@@ -42,10 +46,8 @@ public final class PredictedLagVehicles extends PredictedVehicles {
       keep(seenVx, kept, reading, into);
       keep(seenVy, kept, reading, into);
     }
-    if (read.seenZ.length > 0) {
-      System.arraycopy(read.seenZ, reading, read.seenZ, into, worlds);
-      System.arraycopy(read.seenVz, reading, read.seenVz, into, worlds);
-    }
+    for (int down = LaneObservation.DOWN; down < LaneObservation.IN_SPACE; down++)
+      if (seen[down].length > 0) System.arraycopy(seen[down], reading, seen[down], into, worlds);
     int[] commands = propagation.commands();
     float[] numbers = propagation.numbers();
     for (int part = 0; part < commands.length; part++) {

@@ -18,23 +18,23 @@ public abstract class PredictedVehicles {
 
   /** Sets all readings of one world's vehicle to its start, at rest.
    *
-   * @param read the readings
+   * @param seen the readings: by component, slot and world
    */
-  void restart(int world, TimetableReadings read) {}
+  void restart(int world, float[][] seen) {}
 
   /** Adds a reading to the forecast, if the model's state contains more than a reading.
    *
-   * @param read the readings
+   * @param seen the readings: by component, slot and world
    * @param sent the commands, indexed by slot
    * @param from the index, for the first world, of the previous reading; negative if there is none
    * @param reading the index, for the first world, of this reading
    * @param propagation the steps from the previous reading to this one
    */
-  void enter(TimetableReadings read, Directions sent, int from, int reading, Propagation propagation) {}
+  void enter(float[][] seen, Directions sent, int from, int reading, Propagation propagation) {}
 
   /** Predicts from a reading.
    *
-   * @param read the readings, to which the predictions are added
+   * @param seen the readings: by component, slot and world, to which the predictions are added
    * @param sent the commands, indexed by slot
    * @param reading the index of the reading, for the first world
    * @param into the index of the prediction, for the first world
@@ -42,7 +42,7 @@ public abstract class PredictedVehicles {
    * @param withVelocity whether velocities are predicted too
    */
   abstract void predict(
-      TimetableReadings read,
+      float[][] seen,
       Directions sent,
       int reading,
       int into,

@@ -93,7 +93,7 @@ public final class TimetableKernel {
       case JOIN -> agent.join(first, operations[field + 3] != 0, operations[field + 4]);
       case PREDICT ->
           agent.vehicles.predicted.predict(
-              agent.vehicles,
+              agent.vehicles.seen,
               agent.headings,
               first * WORLDS,
               operations[field + 3] * WORLDS,
@@ -101,7 +101,7 @@ public final class TimetableKernel {
               withVelocity);
       case ENTER ->
           agent.vehicles.predicted.enter(
-              agent.vehicles,
+              agent.vehicles.seen,
               agent.headings,
               first < 0 ? -1 : first * WORLDS,
               operations[field + 3] * WORLDS,

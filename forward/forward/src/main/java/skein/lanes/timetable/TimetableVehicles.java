@@ -3,6 +3,8 @@ package skein.lanes.timetable;
 import skein.forward.RolloutAgent;
 import skein.lanes.plant.LaneSensors;
 import skein.lanes.policy.Directions;
+import skein.lanes.policy.LaneObservation;
+import skein.lanes.policy.LanePolicy;
 import skein.lanes.policy.VehicleNumbers;
 import skein.vehicle.SensorNoise;
 
@@ -10,7 +12,14 @@ import skein.vehicle.SensorNoise;
  * all worlds, so all that depends only on time is a constant of the timetable, computed by a corresponding
  * {@link EventClock}.
  */
-public abstract class TimetableVehicles extends TimetableReadings {
+public abstract class TimetableVehicles {
+  public static final int WORLDS = LanePolicy.WORLDS;
+
+  /** The readings of the vehicles, and what is predicted from them: by component ({@link LaneObservation#X}
+   * and the following constants), then by slot, then by world; empty components down where vehicles fly level.
+   */
+  public final float[][] seen = new float[LaneObservation.IN_SPACE][0];
+
   /** Predicts from their readings, in loops that predict; else null. */
   public PredictedVehicles predicted;
 
@@ -57,16 +66,9 @@ public abstract class TimetableVehicles extends TimetableReadings {
    * @param worlds number of worlds that count, from the first
    */
   public final void start(int readings, int worlds) {
-    if (seenX.length < readings * WORLDS) {
-      seenX = new float[readings * WORLDS];
-      seenY = new float[readings * WORLDS];
-      seenVx = new float[readings * WORLDS];
-      seenVy = new float[readings * WORLDS];
-      if (inSpace) {
-        seenZ = new float[readings * WORLDS];
-        seenVz = new float[readings * WORLDS];
-      }
-    }
+    if (seen[LaneObservation.X].length < readings * WORLDS)
+      for (int component = 0; component < (inSpace ? LaneObservation.IN_SPACE : LaneObservation.READ); component++)
+        seen[component] = new float[readings * WORLDS];
     start(worlds);
     if (predicted != null) predicted.start(worlds, startZ);
   }
@@ -78,17 +80,13 @@ public abstract class TimetableVehicles extends TimetableReadings {
    * @param headingRad where a car points
    */
   public final void restart(int world, float headingRad) {
-    for (int i = world; i < seenX.length; i += WORLDS) {
-      seenX[i] = startX[world];
-      seenY[i] = startY[world];
-      seenVx[i] = 0f;
-      seenVy[i] = 0f;
-      if (inSpace) {
-        seenZ[i] = startZ[world];
-        seenVz[i] = 0f;
-      }
+    for (int i = world; i < seen[LaneObservation.X].length; i += WORLDS) {
+      for (float[] each : seen) if (each.length > 0) each[i] = 0f;
+      seen[LaneObservation.X][i] = startX[world];
+      seen[LaneObservation.Y][i] = startY[world];
+      if (inSpace) seen[LaneObservation.DOWN][i] = startZ[world];
     }
-    if (predicted != null) predicted.restart(world, this);
+    if (predicted != null) predicted.restart(world, seen);
     rest(world, headingRad);
   }
 
@@ -115,14 +113,8 @@ public abstract class TimetableVehicles extends TimetableReadings {
    */
   final void sense(long atNs, int into, boolean withVelocity) {
     sensors.at(atNs);
-    sensors.add(LaneSensors.NORTH, seenX, into);
-    sensors.add(LaneSensors.EAST, seenY, into);
-    if (inSpace) sensors.add(LaneSensors.DOWN, seenZ, into);
-    // In space, velocities are always read.
-    if (!withVelocity && !inSpace) return;
-    sensors.add(LaneSensors.NORTH_MPS, seenVx, into);
-    sensors.add(LaneSensors.EAST_MPS, seenVy, into);
-    if (inSpace) sensors.add(LaneSensors.DOWN_MPS, seenVz, into);
+    for (int read = 0; read < LaneSensors.count(withVelocity, inSpace); read++)
+      sensors.add(LaneSensors.componentOf(read), seen[read], into);
   }
 
   /** Reads the vehicles.

@@ -2,6 +2,7 @@ package skein.lanes.loop
 
 import skein.forward.*
 import skein.lanes.timetable.StandingStill
+import skein.units.eachBelow
 import skein.vehicle.SensorNoise
 
 /** The views of one world under the `stream` loop, in order, including requests that are overtaken, late,
@@ -65,14 +66,12 @@ private[lanes] final class ViewSource private (
   protected def joined(): Unit =
     isJoined = true
     joinedAt = world.nowNs
-    var vehicle = 0
-    while vehicle < world.count do
+    eachBelow(world.count): vehicle =>
       isFresh(vehicle) = !waiting(vehicle)
       if sampledAt(vehicle) > Long.MinValue then row = row.max(tickOf(vehicle))
-      vehicle += 1
     val ticks = (world.nowNs / periodNs).toInt + 1
     isRegular = world.nowNs < (row + ahead) * periodNs
-    vehicle = 0
+    var vehicle = 0
     while isRegular && vehicle < world.count do
       isRegular = question(vehicle) == row && tickOf(vehicle) == row &&
         sampledAt(vehicle) < (row + 1) * periodNs && questions(vehicle).isUpTo(row, ticks) &&

@@ -3,8 +3,8 @@ package skein.lanes.plant
 import skein.forward.SteppedVehicles
 import skein.lanes.policy.Directions
 import skein.simd.LaneFunction
-import skein.units.{Quaternion, Vector3}
-import skein.vehicle.Quadrotor
+import skein.units.{Vector3, eachBelow}
+import skein.vehicle.{Quadrotor, QuadrotorState}
 
 /** Simulates quadrotors with their flight controllers, [[LaneQuadrotors.VEHICLES]] at a time, in floats,
   * under `moveByVelocityZ`. The code is compiled from the scalar [[Quadrotor]], which is also the reference
@@ -37,8 +37,8 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
   val AY: Int = rowOf("ay")
   val AZ: Int = rowOf("az")
 
-  private val orientation: Vector[Int] = Vector("qw", "qx", "qy", "qz").map(rowOf)
-  private val angular: Vector[Int]     = Vector("wx", "wy", "wz").map(rowOf)
+  private val (qw, qx, qy, qz) = (rowOf("qw"), rowOf("qx"), rowOf("qy"), rowOf("qz"))
+  private val (wx, wy, wz)     = (rowOf("wx"), rowOf("wy"), rowOf("wz"))
 
   def use(vehicles: Int): Unit = steps.foreach(_.use(vehicles))
 
@@ -61,10 +61,8 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
     goal(2 * VEHICLES + place) = downM
 
   def command(commanded: Directions, from: Int, speedMps: Float, downM: Float): Unit =
-    var place = 0
-    while place < VEHICLES do
+    eachBelow(VEHICLES): place =>
       command(place, commanded.cos(from + place) * speedMps, commanded.sin(from + place) * speedMps, downM)
-      place += 1
 
   def step(): Unit = fly(1)
 
@@ -75,26 +73,16 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
       isOther = !isOther
       left -= 1
 
-  def positionNed(place: Int): Vector3 = Vector3(x(place), y(place), z(place))
-  def velocityNed(place: Int): Vector3 = Vector3(vx(place), vy(place), vz(place))
+  def positionNed(place: Int): Vector3 = Vector3(state(X + place), state(Y + place), state(Z + place))
+  def velocityNed(place: Int): Vector3 = Vector3(state(VX + place), state(VY + place), state(VZ + place))
 
-  def x(place: Int): Double  = state(X + place)
-  def y(place: Int): Double  = state(Y + place)
-  def z(place: Int): Double  = state(Z + place)
-  def vx(place: Int): Double = state(VX + place)
-  def vy(place: Int): Double = state(VY + place)
-  def vz(place: Int): Double = state(VZ + place)
-  def ax(place: Int): Double = state(AX + place)
-  def ay(place: Int): Double = state(AY + place)
-  def az(place: Int): Double = state(AZ + place)
-
-  def orientation(place: Int): Quaternion =
-    val Vector(w, x, y, z) = orientation.map(row => state(row + place).toDouble): @unchecked
-    Quaternion(w, x, y, z)
-
-  def angularVelocityFrd(place: Int): Vector3 =
-    val Vector(front, right, down) = angular.map(row => state(row + place).toDouble): @unchecked
-    Vector3(front, right, down)
+  def read(place: Int, into: QuadrotorState): Unit =
+    into.x = state(X + place); into.y = state(Y + place); into.z = state(Z + place)
+    into.vx = state(VX + place); into.vy = state(VY + place); into.vz = state(VZ + place)
+    into.ax = state(AX + place); into.ay = state(AY + place); into.az = state(AZ + place)
+    into.qw = state(qw + place); into.qx = state(qx + place)
+    into.qy = state(qy + place); into.qz = state(qz + place)
+    into.wx = state(wx + place); into.wy = state(wy + place); into.wz = state(wz + place)
 
 private[skein] object LaneQuadrotors:
   /** Number of vehicles that are simulated together. */

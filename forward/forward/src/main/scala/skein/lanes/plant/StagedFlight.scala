@@ -1,8 +1,9 @@
 package skein.lanes.plant
 
-import skein.lanes.policy.Directions
+import skein.lanes.policy.{Directions, LaneObservation}
 import skein.simd.{BoundFunction, LaneCall}
 import skein.simd.LaneFunction.COUNT as WORLDS
+import skein.units.eachBelow
 
 /** Flights by one plant's [[PlantStages]], in many worlds whose steps begin and end together. Mutable.
   *
@@ -107,49 +108,24 @@ private[lanes] final class StagedFlight(
     tell(time, at + 1)
 
   private def tell(time: Array[Float], at: Int): Unit =
-    var i = 0
-    while i < times do
+    eachBelow(times): i =>
       parameters(firstOfTime + i) = time(at + i)
-      i += 1
 
   private def turnOver(): Unit =
     val before = moving
     moving = other
     other = before
 
-  def look(
-      x: Array[Float],
-      y: Array[Float],
-      vx: Array[Float],
-      vy: Array[Float],
-      into: Int,
-      withVelocity: Boolean
-  ): Unit =
-    val look = if withVelocity then moving.look else moving.position
-    look.output(0, x, into)
-    look.output(1, y, into)
-    if withVelocity then
-      look.output(2, vx, into)
-      look.output(3, vy, into)
-    look()
-
-  /** Writes the present position and velocity in space. */
-  def lookInSpace(
-      x: Array[Float],
-      y: Array[Float],
-      vx: Array[Float],
-      vy: Array[Float],
-      z: Array[Float],
-      vz: Array[Float],
-      into: Int
-  ): Unit =
-    val look = moving.look
-    look.output(0, x, into)
-    look.output(1, y, into)
-    look.output(2, vx, into)
-    look.output(3, vy, into)
-    look.output(4, z, into)
-    look.output(5, vz, into)
+  /** Writes the present position and, if it is wanted or the flight is in space, velocity.
+    *
+    * @param seen by component of a reading ([[LaneObservation]])
+    * @param into index of the first world
+    */
+  def look(seen: Array[Array[Float]], into: Int, withVelocity: Boolean): Unit =
+    val moves = withVelocity || lanes.inSpace
+    val look  = if moves then moving.look else moving.position
+    for i <- 0 until (if moves then stages.look.outputs else LaneObservation.VX) do
+      look.output(i, seen(i), into)
     look()
 
   /** Writes the present state in rows.

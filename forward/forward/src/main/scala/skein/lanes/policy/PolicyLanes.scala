@@ -2,7 +2,7 @@ package skein.lanes.policy
 
 import skein.formula.{Angles, Evaluation, Node, Op, Trace, Untraceable}
 import skein.lanes.policy.OpponentFormula.In as Seen
-import skein.policy.{GraphPolicy, PlanarObservation, Policy, PolicyFormula}
+import skein.policy.{GraphPolicy, Policy, PolicyFormula}
 import skein.simd.{Forms, LaneCompiler, LaneFunction, Recent}
 
 /** The decision of policies of one form in many worlds with SIMD, compiled from the policy's own method;
@@ -81,9 +81,6 @@ private[skein] final class PolicyLanes private (formula: OpponentFormula):
   /** Number of parameters by which it differs from others of its form. */
   def parameters: Int = derived.size
 
-  /** Number of values and conditions computed at a decision. */
-  def operations: Int = needed.count(_.args.nonEmpty)
-
   /** Number of arrays that it reads. */
   def inputs: Int = In.Memory + memories
 
@@ -137,24 +134,6 @@ private[skein] final class PolicyLanes private (formula: OpponentFormula):
     if plain then indices.map(own(_))
     else evaluation(Array.emptyDoubleArray, own)
 
-  /** The function's inputs for the observation and memory of one policy. */
-  def inputsOf(seen: PlanarObservation, memory: Any): Array[Double] =
-    val (own, known) = (seen.ownHeadingRad, seen.opponentHeadingRad)
-    Array(
-      seen.dxM,
-      seen.dyM,
-      seen.dvxMps,
-      seen.dvyMps,
-      seen.elapsedS,
-      StrictMath.cos(own),
-      StrictMath.sin(own),
-      StrictMath.cos(known),
-      StrictMath.sin(known),
-      StrictMath.IEEEremainder(own, 2 * math.Pi),
-      seen.ownAgeS,
-      seen.opponentAgeS
-    ) ++ numbersOf(memory)
-
   /** The components of a policy's initial memory. */
   def initialOf(policy: Policy): Array[Double] = formula.startOf(policy)
 
@@ -200,12 +179,6 @@ private[skein] object PolicyLanes:
     final val OpponentAge = 11
 
     final val Memory = 12
-
-  private def numbersOf(memory: Any): Vector[Double] = memory match
-    case number: Double         => Vector(number)
-    case several: Product       => several.productIterator.flatMap(numbersOf).toVector
-    case numbers: Array[Double] => numbers.toVector
-    case _                      => Vector.empty
 
   /** A policy's formula, and the SIMD code of those that it [[PolicyFormula.fits]], or why there is none. */
   private final case class Form(formula: PolicyFormula, lanes: Either[Untraceable, PolicyLanes])

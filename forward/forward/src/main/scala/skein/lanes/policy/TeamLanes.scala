@@ -2,11 +2,11 @@ package skein.lanes.policy
 
 import scala.collection.mutable
 import skein.formula.{Angles, Evaluation, Node, Op, Trace, Untraceable}
-import skein.forward.{Engagement, RolloutAgent}
+import skein.forward.RolloutAgent
 import skein.fusion.SensorModel
 import skein.policy.{Action, Assignment, Policy, PolicyFormula, PolicyInput}
 import skein.policy.PolicyFormula.Motion
-import skein.simd.{BoundFunction, Forms, LaneFunction, Recent}
+import skein.simd.{BoundFunction, Forms, LaneFunction, Recent, Sources}
 import skein.units.{Expect, Metres}
 
 /** SIMD decisions of a team's policies in many worlds, compiled from their own methods ([[PolicyFormula]]).
@@ -27,6 +27,11 @@ private[lanes] final class TeamLanes private (
   private val view  = (if inSpace then LaneObservation.IN_SPACE else LaneObservation.DOWN) * count
   private val trace = Trace(MostOperations)
 
+  /** What further inputs stand for, with the vehicle that has them; -1 for values shared by all. */
+  private val further = Sources[(Int, Source)](first = view)
+
+  private def own(self: Int, source: Source): Node = trace.input(further.inputOf((self, source)))
+
   /** By vehicle, the headings that it needs: its own previous one, or the known one of another vehicle. */
   private val headings = Vector.tabulate(count): self =>
     val formula = formulas(self)
@@ -41,16 +46,17 @@ private[lanes] final class TeamLanes private (
 
   private val angles: Vector[Angles] = Vector.tabulate(count): self =>
     val input                                 = formulas(self).inputs
-    def own(number: Int)                      = trace.input(ownInput(self, number))
+    def own(source: Source)                   = this.own(self, source)
     def direction(vehicle: Int): (Node, Node) =
-      if vehicle == self then (own(Own.Cos), own(Own.Sin))
-      else (own(Own.KnownCos + vehicle), own(Own.KnownSin + vehicle))
+      if vehicle == self then (own(Source.Cos), own(Source.Sin))
+      else (own(Source.KnownCos(vehicle)), own(Source.KnownSin(vehicle)))
     Angles(
       formulas(self).formula.trace,
       trace,
       input(_) match
         case PolicyInput.Position(vehicle, 2) =>
-          if inSpace then trace.input(LaneObservation.DOWN * count + vehicle) else own(Own.Altitude + vehicle)
+          if inSpace then trace.input(LaneObservation.DOWN * count + vehicle)
+          else own(Source.Altitude(vehicle))
         case PolicyInput.Position(vehicle, axis) => trace.input(axis * count + vehicle)
         case PolicyInput.Velocity(vehicle, 2)    =>
           if inSpace then trace.input((LaneObservation.DOWN + 1) * count + vehicle) else trace.const(0)
@@ -58,19 +64,19 @@ private[lanes] final class TeamLanes private (
         case PolicyInput.Heading(vehicle)        =>
           val (cos, sin) = direction(vehicle)
           trace.binary(Op.Atan2, sin, cos)
-        case PolicyInput.Age(vehicle)   => own(Own.Age + vehicle)
-        case PolicyInput.Elapsed        => own(Own.Elapsed)
-        case PolicyInput.ActsIn         => own(Own.ActsIn)
-        case PolicyInput.Time           => own(Own.Time)
-        case PolicyInput.Cruise         => own(Own.Cruise)
-        case PolicyInput.StartDown      => own(Own.StartDown)
-        case PolicyInput.Memory(number) => own(Own.Memory + number)
+        case PolicyInput.Age(vehicle)   => own(Source.Age(vehicle))
+        case PolicyInput.Elapsed        => own(Source.Elapsed)
+        case PolicyInput.ActsIn         => own(Source.ActsIn)
+        case PolicyInput.Time           => own(Source.Time)
+        case PolicyInput.Cruise         => own(Source.Cruise)
+        case PolicyInput.StartDown      => own(Source.StartDown)
+        case PolicyInput.Memory(number) => own(Source.Memory(number))
       ,
       input(_) match
         case PolicyInput.Heading(vehicle) => Some(direction(vehicle))
         case _                            => None
       ,
-      number => own(Own.Parameters + number)
+      number => own(Source.Parameter(number))
     )
 
   /** For each vehicle: the commanded velocity, north and east; cosine and sine of its heading, or anything
@@ -88,13 +94,11 @@ private[lanes] final class TeamLanes private (
         val (cos, sin)    = if headings.exists(_(self)) then directionOf(self, north, east) else (north, east)
         Vector(north, east, cos, sin)
     val vertical = Vector.from(Option.when(inSpace):
-      formulas(self).vertical.fold(Vector(own(self, Own.StartDown), trace.const(1))): each =>
+      formulas(self).vertical.fold(Vector(own(self, Source.StartDown), trace.const(1))): each =>
         Vector(by.convert(each.third), by.convert(each.holds))).flatten
     course ++ vertical ++ formulas(self).memory.map(by.convert)
 
   val decided: Int = if inSpace then 6 else 4
-
-  private def own(self: Int, number: Int) = trace.input(ownInput(self, number))
 
   /** Direction of a velocity; for a velocity near zero, the previous direction. */
   private def directionOf(self: Int, north: Node, east: Node): (Node, Node) =
@@ -102,8 +106,8 @@ private[lanes] final class TeamLanes private (
     val isSlow = trace.lt(speed, trace.const(Action.LeastMps))
     val by     = trace.where(isSlow, trace.const(1), speed)
     (
-      trace.where(isSlow, trace.input(ownInput(self, Own.Cos)), trace.div(north, by)),
-      trace.where(isSlow, trace.input(ownInput(self, Own.Sin)), trace.div(east, by))
+      trace.where(isSlow, own(self, Source.Cos), trace.div(north, by)),
+      trace.where(isSlow, own(self, Source.Sin), trace.div(east, by))
     )
 
   private val derived = angles.map(_.derived)
@@ -127,7 +131,7 @@ private[lanes] final class TeamLanes private (
   val shared: BoundFunction = BoundFunction.of(common.nodes)
 
   private def own(outputs: Vector[Node]): BoundFunction =
-    BoundFunction.of(common.without(trace, outputs, number => trace.input(sharedInput(number))))
+    BoundFunction.of(common.without(trace, outputs, number => own(-1, Source.Shared(number))))
 
   /** By vehicle: the function for its own part of the decision, without the memory that is not
     * [[remembered]].
@@ -143,9 +147,7 @@ private[lanes] final class TeamLanes private (
   def reading(input: Int): Option[(Int, Int)] =
     Option.when(input < view)((input % count, input / count))
 
-  def source(input: Int): Source =
-    if input >= FirstShared then Source.Shared(input - FirstShared)
-    else Own.source((input - view) % Stride)
+  def source(input: Int): Source = further(input)._2
 
   private val sources = functions.zip(sights).map: (decides, observes) =>
     (decides.inputs ++ observes.inputs).toVector.filter(reading(_).isEmpty).map(source)
@@ -205,52 +207,12 @@ private[lanes] final class TeamLanes private (
     team.policies.size == count &&
       team.policies.indices.forall(self => formulas(self).fits(team.policies(self), assignment))
 
-  private def ownInput(self: Int, number: Int) = view + self * Stride + number
-
 private[lanes] object TeamLanes:
-  /** Inputs that each vehicle has separately; some of them exist for each of the other vehicles. */
-  private object Own:
-    final val Cos        = 0
-    final val Sin        = 1
-    final val Elapsed    = 2
-    final val ActsIn     = 3
-    final val Cruise     = 4
-    final val StartDown  = 5
-    final val Time       = 6
-    final val Age        = 7
-    final val KnownCos   = Age + Engagement.Most
-    final val KnownSin   = KnownCos + Engagement.Most
-    final val Altitude   = KnownSin + Engagement.Most
-    final val Memory     = Altitude + Engagement.Most
-    final val Parameters = Memory + MostMemories
+  private val MostMemories = 1024
 
-    def source(number: Int): Source =
-      if number >= Parameters then Source.Parameter(number - Parameters)
-      else if number >= Memory then Source.Memory(number - Memory)
-      else if number >= Altitude then Source.Altitude(number - Altitude)
-      else if number >= KnownSin then Source.KnownSin(number - KnownSin)
-      else if number >= KnownCos then Source.KnownCos(number - KnownCos)
-      else if number >= Age then Source.Age(number - Age)
-      else
-        number match
-          case Cos     => Source.Cos
-          case Sin     => Source.Sin
-          case Elapsed => Source.Elapsed
-          case ActsIn  => Source.ActsIn
-          case Time    => Source.Time
-          case Cruise  => Source.Cruise
-          case _       => Source.StartDown
+  private val MostOperations = 2_000_000
 
-  private final val MostMemories = 1024
-
-  /** More parameters than any policy within a trace's limit of operations can have. */
-  private final val Stride      = 1 << 18
-  private final val FirstShared = 1 << 30
-
-  private final val MostOperations = 2_000_000
-
-  private def sharedInput(number: Int) = FirstShared + number
-
+  /** What each vehicle has separately, some of it for each of the other vehicles; and shared values. */
   enum Source:
     case Cos, Sin, Elapsed, ActsIn, Time, Cruise, StartDown
     case Age(vehicle: Int)

@@ -3,8 +3,8 @@ package skein.lanes.score
 import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
 import skein.lanes.timetable.OwnEnds
 import skein.policy.PolicyInput
-import skein.scenario.{EndFormula, OwnEnd, Positions, Quantity, Reduction, Separation}
-import skein.simd.{BoundFunction, Forms}
+import skein.scenario.{EndFormula, OwnEnd, Positions, Quantity, Reduction}
+import skein.simd.{BoundFunction, Forms, Sources}
 import skein.units.Expect
 
 /** Scores flights in many worlds with SIMD. The quantities, compiled from [[Quantity.of]], and their
@@ -20,7 +20,13 @@ private[lanes] final class ScoreLanes private (
 ):
   import ScoreLanes.*
 
-  private val trace = Trace()
+  private val trace   = Trace()
+  private val sources = Sources[Source]()
+
+  /** What an input of the compiled functions stands for. */
+  def source(input: Int): Source = sources(input)
+
+  private def nodeOf(source: Source): Node = trace.input(sources.inputOf(source))
 
   /** The formulas of the quantities, then that of the end. */
   private val all = quantities ++ end.map(_.formula)
@@ -34,12 +40,15 @@ private[lanes] final class ScoreLanes private (
       trace,
       if number < judged.size then ofPositions else ofEnd,
       _ => None,
-      parameter => trace.input(FirstParameter + number * Stride + parameter)
+      parameter => nodeOf(Source.Parameter(number, parameter))
     )
 
   /** The node for an input of a quantity's formula. */
   private def ofPositions(input: Int): Node =
-    if input == 3 * count then trace.param(Time) else trace.input(input)
+    if input == 3 * count then trace.param(Time) else position(input % count, input / count)
+
+  private def position(vehicle: Int, axis: Int): Node =
+    nodeOf(if axis < 2 then Source.Reading(vehicle, axis) else Source.Altitude(vehicle))
 
   /** Whether a quantity depends on the time. */
   val asksTime: Boolean = quantities.exists(each =>
@@ -48,10 +57,10 @@ private[lanes] final class ScoreLanes private (
 
   /** The node for an input of the end's formula. */
   private def ofEnd(input: Int): Node = end.get.inputs(input) match
-    case PolicyInput.Position(vehicle, axis) => trace.input(axis * count + vehicle)
-    case PolicyInput.Velocity(vehicle, axis) => trace.input((3 + axis) * count + vehicle)
-    case PolicyInput.Age(vehicle)            => trace.input(6 * count + Own.Ages + vehicle)
-    case _                                   => trace.input(6 * count + Own.Since)
+    case PolicyInput.Position(vehicle, axis) => position(vehicle, axis)
+    case PolicyInput.Velocity(vehicle, axis) => nodeOf(Source.Velocity(vehicle, axis))
+    case PolicyInput.Age(vehicle)            => nodeOf(Source.Age(vehicle))
+    case _                                   => nodeOf(Source.Since)
 
   def hasEnd: Boolean = end.isDefined
 
@@ -73,7 +82,7 @@ private[lanes] final class ScoreLanes private (
   val initial: Vector[Float] = judged.flatMap(initially) ++
     Vector.from(Option.when(hasEnd)(Float.PositiveInfinity +: judged.map(_ => 0f))).flatten
 
-  private def kept(place: Int): Node = trace.input(FirstKept + place)
+  private def kept(place: Int): Node = nodeOf(Source.Kept(place))
 
   private def formulaOf(number: Int): Node = angles(number).convert(all(number).outputs(0)._2)
 
@@ -90,7 +99,7 @@ private[lanes] final class ScoreLanes private (
   /** Computes when each world ended; None if all last for the whole duration. */
   val ending: Option[Ending] = end.map: _ =>
     val goesOn = trace.equal(formulaOf(judged.size), trace.const(0))
-    val now    = trace.where(goesOn, trace.const(Double.PositiveInfinity), trace.input(6 * count + Own.Now))
+    val now    = trace.where(goesOn, trace.const(Double.PositiveInfinity), nodeOf(Source.Now))
     Ending(endedAt, BoundFunction.of(Vector(trace.binary(Op.Min, kept(endedAt), now))))
 
   /** The kind of inputs on which the end depends. */
@@ -165,20 +174,6 @@ private[lanes] final class ScoreLanes private (
       BoundFunction.of(numbers.flatMap(successors(_).map(_._2)))
     )
 
-  /** The source of a function's input: a reading, an altitude, a parameter or an accumulator. */
-  def source(input: Int): Source =
-    if input < 2 * count then Source.Reading(input % count, input / count)
-    else if input < 3 * count then Source.Altitude(input - 2 * count)
-    else if input < 6 * count then Source.Velocity(input % count, input / count - 3)
-    else if input < FirstParameter then
-      input - 6 * count match
-        case Own.Now   => Source.Now
-        case Own.Since => Source.Since
-        case age       => Source.Age(age - Own.Ages)
-    else if input < FirstKept then
-      Source.Parameter((input - FirstParameter) / Stride, (input - FirstParameter) % Stride)
-    else Source.Kept(input - FirstKept)
-
   /** Whether a score needs the weight of a new value, 1 over the count so far. */
   def hasShare(number: Int): Boolean = judged(number).reduction == Reduction.Sd
 
@@ -199,21 +194,11 @@ private[lanes] final class ScoreLanes private (
     } && ends.forall(each => all.last.fits(each.scenario))
 
 private[lanes] object ScoreLanes:
-  private final val FirstParameter = 1 << 20
-  private final val Stride         = 1 << 18
-  private final val FirstKept      = 1 << 30
-
   /** Indices of the parameters that all worlds share: the time, s; then for each score a limit, or the weight
     * of the new value.
     */
   final val Time                     = 0
   def ownParameter(number: Int): Int = 1 + number
-
-  /** Inputs that only the end has, in their order. */
-  private object Own:
-    final val Now   = 0
-    final val Since = 1
-    final val Ages  = 2
 
   /** @see [[ScoreLanes.source]]; `Now` is the time of a decision and `Since` the time from the first decision
     *   to it, s
@@ -291,13 +276,6 @@ private[lanes] object ScoreLanes:
     case _: Reduction if count == 0   => Float.NaN
     case Reduction.TimePositive       => (kept * of.everyS).toFloat
     case _                            => kept
-
-  /** Scores the distance between two vehicles.
-    *
-    * @param by reductions of the distance, each with the time from which values count, s
-    */
-  def ofDistance(by: (Reduction | OfMoment, Double)*): ScoreLanes =
-    of(by.toVector.map(Judged(Separation, _, _)), 2).fold(throw _, identity)
 
   private def formulaOf(quantity: Quantity, vehicles: Int): Either[Untraceable, Formula] =
     // A user's quantity may have any name for its argument.

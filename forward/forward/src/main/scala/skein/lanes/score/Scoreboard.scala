@@ -3,8 +3,8 @@ package skein.lanes.score
 import java.util.Arrays
 import skein.lanes.policy.LaneObservation
 import skein.lanes.timetable.{TimetableAgents, TimetableScores, ViewCall}
-import skein.scenario.Reduction
 import skein.simd.BoundFunction
+import skein.units.eachBelow
 
 /** Scores the flights of many worlds, once a period. Mutable.
   *
@@ -112,6 +112,9 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     counts(number) = 0
     for place <- lanes.places(number) until lanes.places(number + 1) do begin(place)
 
+  /** The time up to which positions are scored, s. */
+  var untilS: Float = Float.PositiveInfinity
+
   /** Resets one world's score. The count of values goes on, so final means and standard deviations are then
     * wrong.
     */
@@ -120,7 +123,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
       kept(place * worlds + world) = lanes.initial(place)
 
   def score(agents: Array[TimetableAgents], views: Array[Int], view: Int, timeS: Float): Unit =
-    val stage = stageAt(timeS)
+    val stage = if timeS <= untilS then stageAt(timeS) else null
     if stage != null then
       stage.shown.look(agents, views, view)
       add(stage, timeS)
@@ -144,11 +147,9 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
 
   /** Computes the times since each world's first decision. */
   private def elapse(runS: Float): Unit =
-    var world = 0
-    while world < worlds do
+    eachBelow(worlds): world =>
       if begunS(world).isNaN then begunS(world) = runS
       sinceS(world) = ScoreLanes.microseconds(runS - begunS(world))
-      world += 1
 
   def hasEnd: Boolean = ending != null
 
@@ -195,12 +196,10 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     while begun < renewed.length && Judged.counts(timeS, judged(renewed(begun)).fromS) do
       renew(renewed(begun), timeS)
       begun += 1
-    var i = 0
-    while i < stage.judged.length do
+    eachBelow(stage.judged.length): i =>
       val number = stage.judged(i)
       counts(number) += 1
       if hasShare(number) then shared(ScoreLanes.ownParameter(number)) = 1f / counts(number)
-      i += 1
     stage.shown.call.apply()
 
   /** Restarts a score in all worlds that have not ended before a time. */
@@ -227,11 +226,3 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   def value(number: Int, world: Int): Float =
     val count = lanes.counted(number).fold(counts(number))(place => kept(place * worlds + world).toInt)
     ScoreLanes.value(judged(number), soFar(number, world), count)
-
-private[lanes] object Scoreboard:
-  /** Scores the distance between two vehicles.
-    *
-    * @param by reductions of the distance, each with the time from which values count, s
-    */
-  def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard =
-    Scoreboard(ScoreLanes.ofDistance(by*), Vector(0, 0))

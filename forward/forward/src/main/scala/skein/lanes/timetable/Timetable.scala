@@ -85,7 +85,7 @@ private[skein] object Timetable:
       link,
       models.map(model => StandingStill.Response(model.handoverS, model.sensors.flatMap(_.ofMissing))),
       asksPolicies = false
-    ).fly(key, observer = notes, sensorSeed = sensorSeed): Unit
+    ).fly(key, observer = notes, sensorSeed = sensorSeed)
     TimetableCompiler(notes, models).result
 
   /** The loop with a trivial predictor: vehicles at rest are predicted at no cost. */

@@ -2,12 +2,13 @@ package skein.lanes.timetable
 
 import java.util.Arrays
 import skein.forward.{RolloutAgent, ImageTiming}
-import skein.lanes.policy.CameraTrackerLanes
+import skein.lanes.policy.{CameraTrackerLanes, LaneObservation}
 
 /** A camera in many worlds whose images are taken at equal times, which a [[Timetable]] defines. Mutable. */
 private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutAgent, opponent: RolloutAgent)
     extends CameraTrackerLanes(forms, own, opponent):
   import CameraTrackerLanes.{Belief, Detection}
+  import LaneObservation.{X, Y}
   import TimetableAgents.WORLDS
 
   private val images   = Array.fill(ImageTiming.Ring)(Array.emptyFloatArray)
@@ -40,7 +41,7 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutA
     validS(image) = times(at)
     Arrays.fill(bearing, times(at + 1))
     Arrays.fill(range, times(at + 2))
-    detect(ours.seenX, ours.seenY, oursAt, theirs.seenX, theirs.seenY, theirsAt, images(image))
+    detect(ours.seen(X), ours.seen(Y), oursAt, theirs.seen(X), theirs.seen(Y), theirsAt, images(image))
     if times(at + 3) == 0 then Arrays.fill(images(image), 0, WORLDS, 0f)
 
   /** Updates the estimate with an image.
@@ -72,5 +73,5 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutA
   def look(ours: TimetableVehicles, oursAt: Int, nowS: Float, aheadS: Float): Unit =
     Arrays.fill(this.nowS, nowS)
     Arrays.fill(this.aheadS, aheadS)
-    decideUpon(ours.seenX, oursAt, ours.seenY, oursAt)
+    decideUpon(ours.seen(X), oursAt, ours.seen(Y), oursAt)
     System.arraycopy(newAxis, 0, axis, 0, WORLDS)

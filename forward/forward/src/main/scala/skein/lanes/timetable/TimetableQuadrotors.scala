@@ -3,7 +3,7 @@ package skein.lanes.timetable
 import skein.formula.Trace
 import skein.forward.RolloutAgent
 import skein.lanes.plant.LaneQuadrotors
-import skein.lanes.policy.Directions
+import skein.lanes.policy.{Directions, LaneObservation}
 import skein.simd.{BoundFunction, LaneCall}
 
 /** Quadrotors with their flight controllers. They move in whole steps: a command takes effect at the first
@@ -15,7 +15,8 @@ import skein.simd.{BoundFunction, LaneCall}
 private[lanes] final class TimetableQuadrotors(agent: RolloutAgent, flown: LaneQuadrotors)
     extends TimetableVehicles(agent):
   import TimetableQuadrotors.*
-  import TimetableReadings.WORLDS
+  import LaneObservation.{VX, VY, X, Y}
+  import TimetableVehicles.WORLDS
   private val hold     = flown.holdingAt(agent.altitudeDownM)
   private val carried  = Array.ofDim[Float](2)
   private val position = LaneCall(placed, carried)
@@ -34,11 +35,11 @@ private[lanes] final class TimetableQuadrotors(agent: RolloutAgent, flown: LaneQ
     val sinceS = times(at + 1)
     carried(0) = sinceS
     carried(1) = sinceS * sinceS / 2
-    look(flown.X, flown.VX, flown.AX, startX, seenX, into)
-    look(flown.Y, flown.VY, flown.AY, startY, seenY, into)
+    look(flown.X, flown.VX, flown.AX, startX, seen(X), into)
+    look(flown.Y, flown.VY, flown.AY, startY, seen(Y), into)
     if withVelocity then
-      lookAtVelocity(flown.VX, flown.AX, seenVx, into)
-      lookAtVelocity(flown.VY, flown.AY, seenVy, into)
+      lookAtVelocity(flown.VX, flown.AX, seen(VX), into)
+      lookAtVelocity(flown.VY, flown.AY, seen(VY), into)
 
   private def look(x: Int, v: Int, a: Int, start: Array[Float], seen: Array[Float], into: Int): Unit =
     position.input(0, flown.state, a)

@@ -2,6 +2,7 @@ package skein.lanes.timetable
 
 import skein.lanes.policy.LaneObservation
 import skein.simd.{BoundFunction, LaneCall, LaneFunction}
+import skein.units.eachBelow
 
 /** A call of a function whose inputs are fields of a view, or are read from fixed arrays.
   *
@@ -32,16 +33,6 @@ private[lanes] final class ViewCall(
       show(vehicle, field, array, from + field * LaneFunction.COUNT)
 
   def look(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
-    var i = 0
-    while i < places.length do
+    eachBelow(places.length): i =>
       val vehicle = vehicles(i)
-      val body    = all(vehicle).vehicles
-      val from    = fields(i) match
-        case 0 => body.seenX
-        case 1 => body.seenY
-        case 2 => body.seenVx
-        case 3 => body.seenVy
-        case 4 => body.seenZ
-        case _ => body.seenVz
-      call.input(places(i), from, views(view + vehicle) * LaneFunction.COUNT)
-      i += 1
+      call.input(places(i), all(vehicle).vehicles.seen(fields(i)), views(view + vehicle) * LaneFunction.COUNT)

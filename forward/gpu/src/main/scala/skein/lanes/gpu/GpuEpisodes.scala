@@ -1,7 +1,7 @@
 package skein.lanes.gpu
 
 import skein.gpu.{Gpu, GpuBuffer}
-import skein.lanes.{LaneThreads, WorldBatches, Worlds}
+import skein.lanes.{LaneThreads, Worlds}
 import skein.lanes.timetable.Timetable
 
 /** A cache of episodes in a GPU's memory, for a number of vehicles. Mutable.
@@ -105,9 +105,5 @@ private[lanes] object GpuEpisodes:
   def inParallel(count: Int, chunk: Int, threads: Int, isCancelled: () => Boolean = () => false)(
       work: Int => Unit
   ): Int =
-    LaneThreads.run(
-      Vector.fill(threads)(()),
-      WorldBatches.inOrder(Array.range(0, count), chunk),
-      isCancelled
-    ): (_, some) =>
-      some.foreach(work)
+    val batches = Array.range(0, count).grouped(chunk).toArray
+    LaneThreads.run(Vector.fill(threads)(()), batches, isCancelled)((_, some) => some.foreach(work))

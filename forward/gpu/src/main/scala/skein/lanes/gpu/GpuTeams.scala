@@ -6,7 +6,8 @@ import skein.lanes.{Accelerated, AcceleratedTeams, Episodes, PreparedTeam, TeamF
 import skein.lanes.policy.{OpponentLanes, TeamLanes}
 
 /** Simulates teams' candidates on a GPU, each in all episodes, with [[GpuOpponentKernel]] or
-  * [[GpuTeamKernel]]. Mutable; one call at a time.
+  * [[GpuTeamKernel]]; in parts of some candidates and episodes, so that a call can be cancelled and fits in
+  * memory. Mutable; one call at a time.
   *
   * @param threads number of threads that make timetables and read policies
   */
@@ -18,7 +19,7 @@ private[lanes] final class GpuTeams(
     periodS: Double,
     episodes: Episodes
 ) extends AcceleratedTeams:
-  import GpuTeams.Chunk
+  import GpuTeams.*
 
   private val onGpu   = mutable.HashMap.empty[(Int, Boolean), GpuEpisodes]
   private val kernels = mutable.HashMap.empty[(TeamForm, GpuLayout), GpuFlightKernel]
@@ -37,23 +38,29 @@ private[lanes] final class GpuTeams(
     ): Unit
     val (known, unknown) =
       teams.indices.toArray.partition(number => isOnGpu(teams(number)))
-    val flown = GpuParts(known, each, onProgress, isCancelled)
-      .fly(teams(_).form, form => form.count * form.durationS / periodS): (form, some, numbers) =>
-        val names   = numbers.toVector.map(i => episodes.nameOf(worlds.link(i), worlds.key(i), form))
-        val held    = episodesFor(form)
-        val brought = held.bring(names, isCancelled): i =>
-          episodes.timetable(worlds.link(numbers(i)), worlds.key(numbers(i)), form)
-        brought.map(fly(form, some, some.map(teams), numbers, _, held.layout, each, into)).isDefined
+    var flown = 0
+    for
+      (form, alike) <- known.groupBy(teams(_).form)
+      decisions = form.count * form.durationS / periodS
+      numbers <-
+        Array.range(0, each).grouped((MostBytes / 4 / (BytesOfDecision * decisions)).toInt.max(1).min(each))
+      some <- alike.grouped((MostDecisions / (numbers.length * decisions)).toInt.max(1))
+      if !isCancelled()
+      held  = episodesFor(form)
+      names = numbers.toVector.map(i => episodes.nameOf(worlds.link(i), worlds.key(i), form))
+      brought <- held.bring(names, isCancelled): i =>
+        episodes.timetable(worlds.link(numbers(i)), worlds.key(numbers(i)), form)
+    do
+      fly(form, some, some.map(teams), numbers, brought, held.layout, each, into)
+      flown += some.length * numbers.length
+      onProgress(flown)
     Accelerated(flown, GpuEpisodes.worldsOf(unknown, each))
 
   private def isOnGpu(team: PreparedTeam) = team.form != null && team.form.refusedByGpu.isEmpty
 
   private def episodesFor(form: TeamForm): GpuEpisodes =
     val shows = form.policies.isInstanceOf[TeamLanes]
-    onGpu.getOrElseUpdate(
-      (form.count, shows),
-      GpuEpisodes(gpu, form.count, shows, threads, GpuParts.MostBytes)
-    )
+    onGpu.getOrElseUpdate((form.count, shows), GpuEpisodes(gpu, form.count, shows, threads, MostBytes))
 
   /** @param candidates indices of the teams
     * @param numbers indices of the episodes
@@ -94,3 +101,14 @@ private[lanes] final class GpuTeams(
 private object GpuTeams:
   /** Number of candidates whose policies a thread reads in a row. */
   private val Chunk = 256
+
+  /** Maximum number of decisions in one part: some tenths of a second on a GPU, or seconds if vehicles move
+    * in steps.
+    */
+  private val MostDecisions = 2e9
+
+  /** Bytes per decision of an episode, of which its operations take about half. */
+  private val BytesOfDecision = 512
+
+  /** Maximum size of the episodes in a GPU's memory, bytes. */
+  private val MostBytes = 1L << 30

@@ -1,6 +1,8 @@
 package skein.lanes.gpu
 
-import skein.lanes.timetable.{OperationKind, Propagation, Timetable}
+import skein.lanes.timetable.{Propagation, Timetable}
+import skein.lanes.timetable.TimetableKernel.{ACT, DECIDE, LOOK, PREDICT, SCORE}
+import skein.units.eachBelow
 
 /** Layout of each GPU thread's own memory, in bytes, with the readings and commands of its vehicles.
   *
@@ -64,22 +66,20 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
   val scoredAtS: Array[Float] =
     Array
       .range(0, timetable.size)
-      .filter(i => timetable.operations(i * Fields) == OperationKind.Score)
+      .filter(i => timetable.operations(i * Fields) == SCORE)
       .map(i => timetable.times(i * timetable.numbers))
 
   private def write(): Unit =
     var shown = Nothing
-    var i     = 0
-    while i < timetable.size do
+    eachBelow(timetable.size): i =>
       val kind = timetable.operations(i * Fields)
       val view = timetable.operations(i * Fields + 2)
       // Values that several vehicles compute from a view are computed once.
-      if layout.shows && kind == OperationKind.Decide && view != shown then
+      if layout.shows && kind == DECIDE && view != shown then
         shown = view
         record(labels.show)
         field(1, count * view)
-      if kind == OperationKind.Predict then predict(i) else operation(kind, i)
-      i += 1
+      if kind == PREDICT then predict(i) else operation(kind, i)
 
   private def record(label: Int): Unit =
     at = records * stride
@@ -96,26 +96,24 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
     val agent             = timetable.operations(i * Fields + 1)
     def place(field: Int) = timetable.operations(i * Fields + 1 + field)
     kind match
-      case OperationKind.Look =>
+      case LOOK =>
         record(labels.look(agent, withVelocity = place(2) != 0))
         field(1, layout.reading(agent, place(1)))
-      case OperationKind.Act =>
+      case ACT =>
         record(labels.act(agent))
         field(1, layout.heading(agent, place(1)))
-      case OperationKind.Decide =>
+      case DECIDE =>
         record(labels.decide(agent))
         field(1, count * place(1))
         if count == 2 then field(2, layout.heading(1 - agent, place(2)))
         field(3, layout.heading(agent, place(3)))
         field(4, layout.heading(agent, place(4)))
-      case OperationKind.Score =>
+      case SCORE =>
         record(labels.score)
         field(1, count * place(1))
       case other => throw IllegalArgumentException(s"no GPU knows operations of kind $other")
-    var number = 0
-    while number < timetable.numbers do
+    eachBelow(timetable.numbers): number =>
       time(number, timetable.times(i * timetable.numbers + number))
-      number += 1
 
   private def predict(i: Int): Unit =
     val agent             = timetable.operations(i * Fields + 1)

@@ -6,9 +6,9 @@ import skein.gpu.InterpretedGpu
 import skein.lanes.*
 import skein.lanes.plant.QuadrotorLanes
 import skein.lanes.policy.OpponentLanes
-import skein.lanes.score.ScoreLanes
+import skein.lanes.score.{Judged, ScoreLanes}
 import skein.policy.{PaperPursuer, Policy, Role}
-import skein.scenario.Reduction
+import skein.scenario.{Reduction, Separation}
 import skein.vehicle.{Quadrotor, ReducedModel}
 
 /** Writes kernels as they go to a GPU's driver into a folder, to be read, or translated by `ptxas -v`. */
@@ -19,7 +19,7 @@ import skein.vehicle.{Quadrotor, ReducedModel}
     val duel    = Pair.paper.engagement.flownBy(Role.Pursuer, pursuer)
     val two     =
       OpponentLanes.of(duel, _ => false, inSpace = false, isPredicted = false).get.fold(sys.error, identity)
-    val scores = ScoreLanes.ofDistance(Reduction.Mean -> 50.1)
+    val scores = ScoreLanes.of(Vector(Judged(Separation, Reduction.Mean, 50.1)), 2).fold(throw _, identity)
     val form   = TeamForm(two, scores, Vector(None), 60, Vector(-20, -20), Vector.empty)(byOneModel = true)
     val kernel = GpuOpponentKernel(InterpretedGpu(), duel.agents, vehicle, None, form, two, layout)
     Files.writeString(Path.of(folder, s"$name.ptx"), kernel.text): Unit
