@@ -181,9 +181,7 @@ private[flight] final class AirSimFleet(
     val prepared =
       if startsAirborne then preparation.place(settings.fleet)
       else preparation.climb(settings.fleet, address, settings.commands)
-    prepared
-      .transformWith(result => client.close().transform(_ => result))
-      .map(_.fold(reason => throw CannotFly(reason), identity))
+    CannotFly.unless(prepared.transformWith(result => client.close().transform(_ => result)))(identity)
 
   /** Starts the emulated link, if the flight has one. */
   private def between(link: LatencyProfile, seed: Long, simulator: Address): Future[Option[LinkProxy]] =

@@ -334,13 +334,12 @@ final class FlightAssembler(
     val origin  = server.map(_ => WorldSettings.DefaultOrigin)
     val mavlink =
       MavlinkFleet(fleet, clock, origin, plain, isDatagrams = !isTcp, () => calledOff(plan.id))
-    def right[A](answer: Either[String, A]): A = answer.fold(reason => throw CannotFly(reason), identity)
     for
       _ <-
         if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps("MAVLink")))
         else Future.unit
-      _                <- mavlink.prepare().map(right)
-      (link, vehicles) <- mavlink.open(linked).map(right)
+      _                <- mavlink.prepare()
+      (link, vehicles) <- mavlink.open(linked)
     yield
       val _       = opened.closing(link)(_.close())
       val custody = MavlinkCustody(
