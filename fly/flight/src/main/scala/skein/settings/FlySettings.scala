@@ -487,50 +487,36 @@ object FlySettings:
           .headOption
           .map("predictor: " + _)
 
-  private given ConfigReader[Int] =
-    parsed(
-      "whole number",
-      text => exactly(text)(_.intValueExact).toRight(s"expected a whole number, got '$text'")
-    )
-
-  private given ConfigReader[Long] =
-    parsed(
-      "whole number",
-      text => exactly(text)(_.longValueExact).toRight(s"expected a whole number, got '$text'")
-    )
-
-  private given ConfigReader[Double] = parsed(
-    "number",
-    text => text.toDoubleOption.filter(_.isFinite).toRight(s"expected a finite number, got '$text'")
-  )
+  private given ConfigReader[Int]    = whole(_.intValueExact)
+  private given ConfigReader[Long]   = whole(_.longValueExact)
+  private given ConfigReader[Double] = parsed: text =>
+    text.toDoubleOption.filter(_.isFinite).toRight(s"expected a finite number, got '$text'")
 
   /** Reads a number exactly, so that `1e3` is a whole number too. */
-  private def exactly[A](text: String)(number: java.math.BigDecimal => A): Option[A] =
-    Try(number(java.math.BigDecimal(text))).toOption
+  private def whole[A](number: java.math.BigDecimal => A): ConfigReader[A] = parsed: text =>
+    Try(number(java.math.BigDecimal(text))).toOption.toRight(s"expected a whole number, got '$text'")
 
-  private given ConfigReader[Span] = parsed("duration", Span.parse)
+  private given ConfigReader[Span] = parsed(Span.parse)
 
-  private given (using Scenarios): ConfigReader[PredictionModel] = parsed("predictor", PredictionModel.parse)
+  private given (using Scenarios): ConfigReader[PredictionModel] = parsed(PredictionModel.parse)
 
-  private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
-  private given ConfigReader[Wire]       = parsed("wire", Wire.parse)
-  private given ConfigReader[Knowledge]  = parsed("knowledge", Knowledge.parse)
-  private given ConfigReader[Strangers]  = parsed("strangers", Strangers.parse)
+  private given ConfigReader[NamedScene] = parsed(NamedScene.read)
+  private given ConfigReader[Wire]       = parsed(Wire.parse)
+  private given ConfigReader[Knowledge]  = parsed(Knowledge.parse)
+  private given ConfigReader[Strangers]  = parsed(Strangers.parse)
 
-  private given ConfigReader[SimulatedBody] = parsed("plant", SimulatedBody.parse)
-  private given ConfigReader[SensorNoise]   = parsed("sensors", SensorNoise.parse)
+  private given ConfigReader[SimulatedBody] = parsed(SimulatedBody.parse)
+  private given ConfigReader[SensorNoise]   = parsed(SensorNoise.parse)
 
-  private given ConfigReader[VehicleLink] = parsed("link between vehicles", VehicleLink.parse)
+  private given ConfigReader[VehicleLink] = parsed(VehicleLink.parse)
 
-  private given ConfigReader[SolverChoice] = parsed("solver", SolverChoice.parse(_))
-  private given ConfigReader[ImageSource]  = parsed("images", ImageSource.parse)
+  private given ConfigReader[SolverChoice] = parsed(SolverChoice.parse(_))
+  private given ConfigReader[ImageSource]  = parsed(ImageSource.parse)
 
-  private given (using Scenarios): ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
+  private given (using Scenarios): ConfigReader[Fallback] = parsed(Fallback.parse)
 
-  private given (using Scenarios): ConfigReader[PolicyFile] = parsed(
-    "policy",
-    text => if text.startsWith("unix:") then OutsidePolicy.reach(text) else PolicyFile.read(text)
-  )
+  private given (using Scenarios): ConfigReader[PolicyFile] = parsed: text =>
+    if text.startsWith("unix:") then OutsidePolicy.reach(text) else PolicyFile.read(text)
 
   private given ConfigReader[PlanSettings] =
     val standard = PlanSettings()
@@ -542,10 +528,9 @@ object FlySettings:
   private def unread[A](value: A): ConfigReader[A] = new ConfigReader[A] with ReadsMissingKeys:
     def from(cursor: ConfigCursor): ConfigReader.Result[A] = Right(value)
 
-  private given (using Scenarios): ConfigReader[AnyLoop] = parsed("loop", AnyLoop.parse)
+  private given (using Scenarios): ConfigReader[AnyLoop] = parsed(AnyLoop.parse)
 
-  private given ConfigReader[LatencyProfile] =
-    parsed("latency profile", text => LatencyProfile.parse(text, TextFile.read).left.map(_.message))
+  private given ConfigReader[LatencyProfile]             = parsed(LinkText.profile)
 
-  private def parsed[A](what: String, parse: String => Either[String, A]): ConfigReader[A] =
-    ConfigReader[String].emap(text => parse(text).left.map(CannotConvert(text, what, _)))
+  private def parsed[A](parse: String => Either[String, A]): ConfigReader[A] =
+    ConfigReader[String].emap(text => parse(text).left.map(CannotConvert(text, "setting", _)))
