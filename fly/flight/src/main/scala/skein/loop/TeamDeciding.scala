@@ -7,7 +7,7 @@ import org.apache.pekko.stream.scaladsl.Flow
 import scala.concurrent.{ExecutionContext, Future}
 import skein.flow.*
 import skein.loop.planning.{PlanStage, PlanWorkers}
-import skein.policy.{Policy, Fleet}
+import skein.policy.Policy
 import skein.units.*
 
 /** Predicts a team's requests for the time at which their commands take effect, decides or plans on them, and
@@ -17,16 +17,14 @@ import skein.units.*
   * @param solver decides instead of the policies
   */
 private final class TeamDeciding(
-    fleet: Fleet,
-    clock: Clock,
-    settings: LoopSettings,
     deciders: IndexedSeq[Decider],
     workers: PlanWorkers,
     solver: Option[Solver],
     sensing: TeamSensing,
-    parts: TeamParts,
-    log: TeamLog
+    parts: TeamParts
 )(using ExecutionContext):
+  import parts.{clock, fleet, log, settings}
+
   /** A view for a decision, with the time of the request. */
   private type Seen = (TeamView, Instant)
 
@@ -257,7 +255,7 @@ private final class TeamDeciding(
       (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
       (memories, seen: Seen, parts, answer) =>
         val (next, made) = planning.decide(memories, vehicles.map(_ => seen._1), seen._2, parts, answer)
-        (next, made.map(one => (decision = one.decision, plan = Some(one.report(answer.slices)))))
+        (next, made.map(one => (decision = one.decision, plan = Some(one.plan))))
     )
 
   private def planElsewhere(planning: JointPlanning, deadline: Deadline, solver: Solver)(using

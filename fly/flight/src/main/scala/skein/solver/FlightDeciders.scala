@@ -58,7 +58,7 @@ final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans]
       .searched(problem, last, plans.deadline, plans.workers, planner)
       .map { answer =>
         val (_, made) = planning.decide(memories, views, now, problem.parts, answer)
-        (made.map(one => Chosen(one.decision.action, Some(one.report(answer.slices)))), answer)
+        (made.map(one => Chosen(one.decision.action, Some(one.plan))), answer)
       }(using ExecutionContext.parasitic)
 
   def close(): Unit = plans.foreach(_.workers.close())
