@@ -102,7 +102,7 @@ final class SolverClient(
             val answer = Promise[Solved]()
             val known = exchange.clocks.map(known => (offset = known.offset, uncertainty = known.uncertainty))
             exchange = next
-            waiting = waiting.updated(vehicle, Waiting(number, deciders.size, known, answer))
+            waiting = waiting.updated(vehicle, Waiting(deciders.size, known, answer))
             answer.future
 
   def close(): Future[Done] =
@@ -252,7 +252,6 @@ object SolverClient:
     override def toString: String = reason
 
   private final case class Waiting(
-      number: Long,
       vehicles: Int,
       clock: Option[(offset: Span, uncertainty: Span)],
       answer: Promise[Solved]
