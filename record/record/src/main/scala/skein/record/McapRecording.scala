@@ -57,12 +57,9 @@ object McapRecording:
       scene: Map[String, String] => Scene,
       mcap: McapWriter
   ): Unit =
-    val names = rows.collect { case (_, vehicle: VehicleRow) => vehicle.name }
-    val from  =
-      rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).nextOption().getOrElse(
-        Instant.ofNanos(0)
-      )
-    val flight = Rows(mcap, names, from, Some(firstOffset(rows.map(_._2))), sceneOf(rows, scene))
+    val names  = rows.collect { case (_, vehicle: VehicleRow) => vehicle.name }
+    val offset = Some(firstOffset(rows.map(_._2)))
+    val flight = Rows(mcap, names, FlightTopics.startOf(rows), offset, sceneOf(rows, scene))
     rows.foreach(flight.put)
 
   /** The scene of a flight that was recorded in the built-in simulator; an empty scene for other simulators.
