@@ -124,7 +124,7 @@ final class SolverDesk(
     val _ = leaving: sessions =>
       uses += 1
       val others = sessions.removed(flight)
-      val kept = if others.size < MostFlights then others else others.removed(others.minBy(_._2.usedAt)._1)
+      val kept   = if others.size < MostFlights then others else others.removed(others.minBy(_._2.usedAt)._1)
       kept.updated(flight, session.copy(usedAt = uses))
 
   /** Ends all flights' sessions and the planners of their decisions. */
@@ -135,7 +135,9 @@ final class SolverDesk(
     val left = lock.synchronized:
       val before = sessions
       sessions = change(before)
-      before.filterNot((flight, session) => sessions.get(flight).exists(_.deciders eq session.deciders)).values
+      before.filterNot((flight, session) =>
+        sessions.get(flight).exists(_.deciders eq session.deciders)
+      ).values
     left.foreach(_.deciders.close())
     left.size
 
