@@ -122,13 +122,12 @@ object PostgresRowSink:
 
   private def make(connection: Connection, schema: String, target: PostgresAddress): PostgresRowSink =
     connection.setAutoCommit(false)
-    Using.resource(connection.createStatement()): statement =>
-      statement.execute(s"""CREATE SCHEMA "$schema"""")
-      statement.execute(s"""CREATE TABLE "$schema".format (version INTEGER NOT NULL)""")
-      statement.execute(s"""INSERT INTO "$schema".format VALUES (${RecordingFormat.version})""")
-      for table <- Table.all do
-        val defined = table.numbered.map(column => column.copy(sqlType = typeOf(column.sqlType)).sql)
-        statement.execute(s"""CREATE TABLE "$schema".${table.name} (${defined.mkString(", ")})"""): Unit
+    Sql.execute(connection, s"""CREATE SCHEMA "$schema"""")
+    Sql.execute(connection, s"""CREATE TABLE "$schema".format (version INTEGER NOT NULL)""")
+    Sql.execute(connection, s"""INSERT INTO "$schema".format VALUES (${RecordingFormat.version})""")
+    for table <- Table.all do
+      val defined = table.numbered.map(column => column.copy(sqlType = typeOf(column.sqlType)).sql)
+      Sql.execute(connection, s"""CREATE TABLE "$schema".${table.name} (${defined.mkString(", ")})""")
     connection.commit()
     PostgresRowSink(connection, schema, target)
 
@@ -160,7 +159,7 @@ private final class StatementRow(insert: PreparedStatement, connection: Connecti
   def texts(values: Vector[String]): Unit   = array("text", values)
   def blob(value: Blob): Unit               = insert.setBytes(next, value.packed)
 
-  def nothing(): Unit                       = insert.setNull(next, Types.NULL)
+  def nothing(): Unit = insert.setNull(next, Types.NULL)
 
 /** The address of a Postgres database.
   *
