@@ -101,12 +101,10 @@ private final class TeamDeciding(
   ): Flow[DecisionRequest, Decision, NotUsed] =
     requests(vehicle)
       .via(askElsewhere(Vector(vehicle), deadline, solver, Span.Zero))
-      .map: (made, solved) =>
-        solved.foreach(log.solved(made.head, _))
-        made.head
+      .map((made, _) => made.head)
       .via(decided(vehicle))
 
-  /** Requests joint decisions from a solver. Missed deadlines are recorded.
+  /** Requests joint decisions from a solver. Answers and missed deadlines are recorded.
     *
     * @return the decisions with the answer; without an answer, the fallback's decisions
     */
@@ -116,7 +114,7 @@ private final class TeamDeciding(
     val instead = Expect.each(vehicles)(vehicle =>
       deadline.otherwise.policy(fleet.agents(vehicle)).toRight(())
     ).toOption
-    inTime(vehicles, deadline.within, instead, asksAgain = true): (memories, view, now) =>
+    val answered = inTime(vehicles, deadline.within, instead, asksAgain = true): (memories, view, now) =>
       val remembered = memories.head.held match
         case used: Solver.Remembered => Some(used)
         case _                       => None
@@ -131,6 +129,7 @@ private final class TeamDeciding(
             (next.copy(held = used), decision)
           ).unzip
           (next, made, solved)
+    answered.via(Tap((made, solved) => for by <- solved; decision <- made do log.solved(decision, by)))
 
   private def decideAtOnce(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
     requests(vehicle)
@@ -262,10 +261,6 @@ private final class TeamDeciding(
       ActorSystem
   ): Flow[Seen, Vector[Planned], NotUsed] =
     askElsewhere(planning.vehicles, deadline, solver, settings.planning.deadline).map: (made, solved) =>
-      for
-        by       <- solved
-        decision <- made
-      do log.solved(decision, by)
       made.zipWithIndex.map((decision, place) =>
         (decision = decision, plan = solved.flatMap(_.chosen(place).plan))
       )
