@@ -53,14 +53,11 @@ private final class TeamSensing(
       for anew <- before.flatMap(_.contradiction(state)) do
         log.note(EventKind.ClockRestarted, Some(reading.vehicle), s"reading $sequence: $anew")
 
-  /** Reads a vehicle; records the answer or the error, and contradictions between the clocks. Thread-safe. */
-  def read(vehicle: Int): Future[Either[VehicleError, Reading]] = read(vehicle, isRunning = true)
-
-  /** Reads a vehicle.
+  /** Reads a vehicle; records the answer or the error, and contradictions between the clocks. Thread-safe.
     *
     * @param isRunning whether the simulator's clock runs by itself
     */
-  private def read(vehicle: Int, isRunning: Boolean): Future[Either[VehicleError, Reading]] =
+  def read(vehicle: Int, isRunning: Boolean = true): Future[Either[VehicleError, Reading]] =
     inboxes.get(vehicle).fold(ask(vehicle, isRunning))(_.read().map(Right(_)))
 
   private def ask(vehicle: Int, isRunning: Boolean): Future[Either[VehicleError, Reading]] =
@@ -170,10 +167,8 @@ private final class TeamSensing(
     * @param isRunning whether the simulator's clock runs by itself
     */
   def readAll(isRunning: Boolean = true): Future[Either[VehicleError, Vector[Reading]]] =
-    inTurn(if messages.isEmpty then ports.indices else own ++ inboxes.keys.toVector.sorted)(read(
-      _,
-      isRunning
-    ))
+    val all = if messages.isEmpty then ports.indices else own ++ inboxes.keys.toVector.sorted
+    inTurn(all)(read(_, isRunning))
 
   /** Asks one after the other, until one fails. */
   private def inTurn[A, B](all: Seq[A])(
