@@ -78,8 +78,9 @@ object Flight:
     import system.dispatcher
     val isPaused = loop == LoopKind.Paused
     require(!isPaused || time.isDefined, "paused needs a simulator whose time passes in steps")
-    val switch                                                         = KillSwitches.shared("flight")
-    val stopping                                                       = Promise[FlightOutcome]()
+    val switch   = KillSwitches.shared("flight")
+    val stopping = Promise[FlightOutcome]()
+
     def graph(kind: LoopKind, team: Team): RunnableGraph[Future[Done]] = kind match
       case LoopKind.Paused =>
         val steps = duration.toNanos / team.settings.period.toNanos

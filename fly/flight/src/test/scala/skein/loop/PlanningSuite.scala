@@ -278,17 +278,10 @@ class PlanningSuite extends munit.FunSuite:
     val speeds               = (0 to 500).map(_ / 100.0)
     def flown(speed: Double) = Manoeuvre.straight(speed, planning.planner.steps)
     def begun(suggested: Double, planned: Double) =
-      val part = posed.copy(situation = posed.situation.copy(suggested = Vector(flown(suggested))))
-      val plan = plans.plans.head.copy(manoeuvre = flown(planned))
-      planning.decide(
-        memory,
-        view,
-        now,
-        part,
-        plan,
-        Vector.empty,
-        isOld = false
-      )._2.decision.action.speed.value
+      val part      = posed.copy(situation = posed.situation.copy(suggested = Vector(flown(suggested))))
+      val plan      = plans.plans.head.copy(manoeuvre = flown(planned))
+      val (_, made) = planning.decide(memory, view, now, part, plan, Vector.empty, isOld = false)
+      made.decision.action.speed.value
     val costs                                   = speeds.map(speed => speed -> rollout.fly(flown(speed)).cost)
     val (best, least)                           = costs.minBy(_._2)
     def worse(from: Double, to: Double): Double =
