@@ -116,7 +116,7 @@ object McapSpeed:
       val channel = mcap.channel("/speed", "raw")
       var at      = 0
       messages.foreach: message =>
-        mcap.message(channel, at, message.logTime, message.logTime, message.data, 0, message.data.length)
+        mcap.message(channel, at, message.logTime, message.logTime, Bytes.of(message.data))
         at += 1
     val written = process.getProcessCpuTime
     val sum     = CRC32()

@@ -1,13 +1,12 @@
 package skein.search
 
-import skein.forward.{Delays, Engagement, LinkDelays, LoopTiming, VelocityResponse}
+import skein.forward.{Delays, Engagement, LoopTiming, VelocityResponse}
 import skein.lanes.{Accelerator, TeamBatch}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.Role
 import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenario, Scenarios}
-import skein.settings.{FlySettings, SensorFile, TextFile, VehicleChoice}
-import skein.signal.LatencyProfile
+import skein.settings.{FlySettings, LinkText, SensorFile, VehicleChoice}
 import skein.units.{Decimals, Expect, Span}
 import skein.vehicle.{SensorNoise, VehicleKind}
 import upickle.default.ReadWriter
@@ -92,10 +91,7 @@ object Conditions:
       * @return Left says what was expected and what was given
       */
     def delays(link: String, vehicles: Int): Either[String, Delays] =
-      LatencyProfile
-        .parse(link, TextFile.read)
-        .left.map(_.message)
-        .flatMap(LinkDelays.checked(_, timing, vehicles))
+      LinkText.delays(link, timing, vehicles)
 
     /** Whether the pursuer observes the evader only through a sensor. */
     def sees: Boolean = game.agents.exists(_.eye.isDefined)

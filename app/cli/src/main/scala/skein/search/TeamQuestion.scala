@@ -6,8 +6,7 @@ import skein.lanes.Engine
 import skein.optimise.{Objective, RunningStats, ScenarioTerm}
 import skein.policy.{Axis, SearchSpace}
 import skein.scenario.{Nearest, Scenario, ScenarioKind, ScenarioText, Scenarios}
-import skein.settings.{ConfigKeys, ScenarioSettings, TextFile}
-import skein.signal.LatencyProfile
+import skein.settings.{ConfigKeys, LinkText, ScenarioSettings}
 import skein.units.Decimals.significant
 import skein.units.Expect
 import upickle.default.ReadWriter
@@ -86,7 +85,7 @@ final case class TeamQuestion(
         for
           _       <- Expect.that(!plantIsTold)(WholeFlights.noPlant(reason))
           loop    <- conditions.checked
-          profile <- LatencyProfile.parse(link, TextFile.read).left.map("--link: " + _.message)
+          profile <- LinkText.profile(link).left.map("--link: " + _)
         yield TeamEngine.Whole(WholeFlights.virtual(conditions, loop, profile, seed, reason))
       case Right(engagements) =>
         val moved = Option.when(all.exists(altitudesM(_) != altitudesM(all.head)))(

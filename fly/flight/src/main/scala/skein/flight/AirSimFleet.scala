@@ -16,12 +16,13 @@ import skein.units.*
 import skein.units.Decimals.fixed
 import skein.vehicle.SensorNoise
 
-/** The vehicles of flights in a simulator that speaks AirSim's wire protocol.
+/** The vehicles of a flight in a simulator that speaks AirSim's wire protocol.
   *
+  * @param address the simulator's
+  * @param opened closes the connections
   * @param startsAirborne whether the simulator can place vehicles in the air; otherwise they climb to their
   *   starts
-  * @param calledOff why the flight of this name must be cancelled while its vehicles move to their starts, if
-  *   so
+  * @param calledOff why the flight must be cancelled while its vehicles move to their starts, if so
   * @param isWatched whether images and clouds that are not recorded are still offered to the recorder
   * @param tell shows a line to the user
   */
@@ -29,26 +30,25 @@ private[flight] final class AirSimFleet(
     transport: Transport,
     clock: Clock,
     settings: FlySettings,
+    plan: FlightPlan,
+    address: Address,
+    opened: Opened,
+    monitor: FlightMonitor,
     startsAirborne: Boolean,
-    calledOff: String => Option[String],
+    calledOff: () => Option[String],
     isWatched: Boolean,
     tell: String => Unit
 )(using system: ActorSystem):
   import system.dispatcher
 
   /** Brings the vehicles to their starts and connects them over the plan's link, or for each vehicle's own
-    * controller over a link of its own. Adds the connections to `opened`, which closes them.
+    * controller over a link of its own.
     */
-  def connect(
-      plan: FlightPlan,
-      address: Address,
-      opened: Opened,
-      monitor: FlightMonitor
-  ): Future[ConnectedFleet] =
+  def connect(): Future[ConnectedFleet] =
     for
-      ready   <- prepare(plan, address)
-      clients <- lines(plan).foldLeft(Future.successful(Vector.empty[AirSimClient])): (before, line) =>
-        before.flatMap(clients => connect(plan, address, line, opened, monitor).map(clients :+ _))
+      ready   <- prepare()
+      clients <- lines.foldLeft(Future.successful(Vector.empty[AirSimClient])): (before, line) =>
+        before.flatMap(clients => connected(line).map(clients :+ _))
       reached = clients.map: client =>
         ready.zipWithIndex.map((vehicle, index) =>
           // Altitudes count from each vehicle's start, as in its own frame.
@@ -56,20 +56,20 @@ private[flight] final class AirSimFleet(
         )
       vehicles = ready.indices.toVector.map(at => reached(settings.own.indexOf(at).max(0) % reached.size)(at))
       logs = vehicles.map(ImageRecorder(_, monitor, sensor => isWatched || settings.recordedImaging(sensor)))
-      cameras = vehicles.zip(logs).map(look(plan, _, monitor, _))
-      films   = vehicles.zip(logs).flatMap(film(plan, _, monitor, _))
+      cameras = vehicles.zip(logs).map(look)
+      films   = vehicles.zip(logs).flatMap(film)
       ports   = vehicles.zip(cameras).zip(logs).map: (looking, log) =>
         val (vehicle, eyes) = looking
         val isPaused        = plan.loop == LoopKind.Paused
         val seen = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
-        Equipped.by(settings.scenario, port(vehicle, monitor), vehicle, seen.toMap, log.scan)
+        Equipped.by(settings.scenario, port(vehicle), vehicle, seen.toMap, log.scan)
       apart =
         if !settings.isDecentralised(plan) then Vector.empty
         else
           settings.own.zip(reached).map((self, seen) =>
-            (self = self, vehicles = seen.map(port(_, monitor)).updated(self, ports(self)))
+            (self = self, vehicles = seen.map(port).updated(self, ports(self)))
           )
-      _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, monitor)
+      _ <- if settings.world.isEmpty then Future.unit else watchContacts(vehicles)
       beside = opened.closing(
         AirSimClient(
           RpcClient(transport, address, clock, RpcSettings(controlConnections = 1)),
@@ -95,36 +95,30 @@ private[flight] final class AirSimFleet(
   /** The link of the only controller, or of `vehicle`'s own controller. */
   private type Line = (vehicle: Option[String], seed: Long)
 
-  private def lines(plan: FlightPlan): Vector[Line] =
+  private def lines: Vector[Line] =
     if !settings.isDecentralised(plan) then Vector((vehicle = None, seed = plan.seed))
     else
       settings.own.map(self =>
         (vehicle = Some(settings.fleet.agents(self).name), seed = SplitMix64.seedOf(plan.seed, self))
       )
 
-  private def connect(
-      plan: FlightPlan,
-      address: Address,
-      line: Line,
-      opened: Opened,
-      monitor: FlightMonitor
-  ): Future[AirSimClient] =
-    between(plan.link, line.seed, address).map: proxy =>
+  private def connected(line: Line): Future[AirSimClient] =
+    between(line.seed).map: proxy =>
       val at = proxy.fold(address)(opened.closing(_)(_.close()).address)
-      opened.closing(fly(plan.loop, line, at, monitor))(_.close())
+      opened.closing(client(line, at))(_.close())
 
-  private def port(vehicle: VehicleClient, recorder: Recorder): VehiclePort = Vehicles.port(
-    vehicle,
-    lost => recorder.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
-  )
+  private def port(vehicle: VehicleClient): VehiclePort =
+    Vehicles.port(vehicle, note(EventKind.TimedOut, Some(vehicle.name), _))
+
+  private def note(
+      kind: EventKind,
+      vehicle: Option[String],
+      detail: String,
+      about: Option[EventSubject] = None
+  ): Unit = monitor.offer(Event(clock.now(), kind, vehicle, detail, about = about))
 
   /** The cameras of a vehicle that the scenario's recognisers use. */
-  private def look(
-      plan: FlightPlan,
-      vehicle: VehicleClient,
-      recorder: Recorder,
-      log: ImageRecorder
-  ): Vector[CameraSensor] =
+  private def look(vehicle: VehicleClient, log: ImageRecorder): Vector[CameraSensor] =
     settings.scenario.eyes.filter(eye => eye.vehicle == vehicle.name && settings.commands(eye.vehicle)).map:
       eye =>
         if isWatched || settings.recordedImaging.nonEmpty then log.ask(eye.camera)
@@ -133,17 +127,12 @@ private[flight] final class AirSimFleet(
           vehicle.eyes,
           plan.seed,
           clock,
-          (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail)),
+          note(_, Some(vehicle.name), _),
           log.image
         )
 
   /** The vehicle's cameras that are only filmed, not used by decisions. */
-  private def film(
-      plan: FlightPlan,
-      vehicle: VehicleClient,
-      recorder: Recorder,
-      log: ImageRecorder
-  ): Vector[FilmedCamera] =
+  private def film(vehicle: VehicleClient, log: ImageRecorder): Vector[FilmedCamera] =
     settings.filmed.filter(_.sensor.vehicle == vehicle.name).map: (sensor, every) =>
       log.ask(sensor.name)
       FilmedCamera(
@@ -152,59 +141,40 @@ private[flight] final class AirSimFleet(
         vehicle.eyes,
         clock,
         log.image,
-        (kind, detail, about) =>
-          recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail, about = about)),
+        note(_, Some(vehicle.name), _, _),
         why => tell(s"${plan.id}: ${vehicle.name}'s camera $why")
       )
 
-  private def watchContacts(
-      opened: Opened,
-      address: Address,
-      vehicles: Vector[VehicleClient],
-      recorder: Recorder
-  ): Future[Unit] =
-    ContactWatch
-      .start(
-        AirSimClient(RpcClient(transport, address, clock), Asking.Timeout),
-        vehicles,
-        settings.period,
-        clock,
-        recorder
-      )
-      .map(contacts => opened.closing(contacts)(_.close()): Unit)
+  private def watchContacts(vehicles: Vector[VehicleClient]): Future[Unit] =
+    val client = AirSimClient(RpcClient(transport, address, clock), Asking.Timeout)
+    opened.closing(ContactWatch(client, vehicles, settings.period, clock, monitor))(_.close()).start()
 
   /** Prepares the vehicles over a separate connection without the link: this is not part of the flight. */
-  private def prepare(plan: FlightPlan, address: Address): Future[Vector[VehicleClient]] =
+  private def prepare(): Future[Vector[VehicleClient]] =
     val client      = AirSimClient(RpcClient(transport, address, clock))
-    val preparation =
-      Preparation(client, clock, () => calledOff(plan.id), byTruth = settings.sensors.isDefined)
-    val prepared =
+    val preparation = Preparation(client, clock, calledOff, byTruth = settings.sensors.isDefined)
+    val prepared    =
       if startsAirborne then preparation.place(settings.fleet)
       else preparation.climb(settings.fleet, address, settings.commands)
-    prepared
-      .transformWith(result => client.close().transform(_ => result))
-      .map(_.fold(reason => throw CannotFly(reason), identity))
+    CannotFly.unless(prepared.transformWith(result => client.close().transform(_ => result)))(identity)
 
   /** Starts the emulated link, if the flight has one. */
-  private def between(link: LatencyProfile, seed: Long, simulator: Address): Future[Option[LinkProxy]] =
-    if link == LatencyProfile.none then Future.successful(None)
+  private def between(seed: Long): Future[Option[LinkProxy]] =
+    if plan.link == LatencyProfile.none then Future.successful(None)
     else
-      val emulated = EmulatedLink(LinkProfile.symmetric(link), seed, clock)
-      LinkProxy.start(AirSimFleet.anyPort, simulator, emulated, transport).map(Some(_))
+      val emulated = EmulatedLink(LinkProfile.symmetric(plan.link), seed, clock)
+      LinkProxy.start(AirSimFleet.anyPort, address, emulated, transport).map(Some(_))
 
-  private def fly(loop: AnyLoop, line: Line, address: Address, recorder: Recorder): AirSimClient =
+  private def client(line: Line, at: Address): AirSimClient =
     val rpc = RpcClient(
       transport,
-      address,
+      at,
       clock,
-      AirSimFleet.rpcSettings(loop),
+      AirSimFleet.rpcSettings(plan.loop),
       line.seed,
-      event =>
-        AirSimFleet.eventOf(event).foreach((kind, detail) =>
-          recorder.offer(Event(clock.now(), kind, line.vehicle, detail))
-        )
+      event => AirSimFleet.eventOf(event).foreach((kind, detail) => note(kind, line.vehicle, detail))
     )
-    AirSimClient(rpc, timeout = AirSimFleet.timeout(loop))
+    AirSimClient(rpc, timeout = AirSimFleet.timeout(plan.loop))
 
 /** Time-outs of AirSim's client, and the events of the client that a recording keeps. */
 object AirSimFleet:

@@ -3,6 +3,7 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.Future
+import scala.util.Failure
 import skein.policy.{Action, Yaw}
 import skein.port.{VehicleError, VehiclePort}
 import skein.signal.Kinematics
@@ -25,74 +26,60 @@ private[flight] final class Approach(
     vehicle: VehiclePort,
     clock: Clock,
     calledOff: () => Option[String] = () => None,
-    truth: Option[() => Future[Either[String, Kinematics]]] = None
+    truth: Option[() => Future[Kinematics]] = None
 )(using
     system: ActorSystem
 ):
   import Approach.*
   import system.dispatcher
 
-  /** Moves the vehicle until it hovers within `limits` of the goal.
+  /** Moves the vehicle until it hovers within `limits` of the goal; fails with [[CannotFly]] if a call
+    * failed, or the vehicle did not arrive within the allowed time.
     *
     * @param goalNed the goal, in the frame of `vehicle`
-    * @return the last reading; `Left` if a call failed, or the vehicle did not arrive within the allowed time
     */
-  def to(goalNed: Vector3, limits: Limits): Future[Either[String, Kinematics]] =
-    look: start =>
+  def to(goalNed: Vector3, limits: Limits): Future[Unit] =
+    look().flatMap: start =>
       val way   = (goalNed - start.positionNed).norm
       val until = clock.now() + Span.ofSeconds(2 * way / Cruise.value) + Patience
       steer(Goal(goalNed, limits, until), None)
 
-  private def steer(goal: Goal, before: Option[Move]): Future[Either[String, Kinematics]] =
-    look: state =>
-      val over = calledOff()
-      if over.isDefined then park(before).map(_ => Left(over.get))
-      else if goal.isHeld(state) then settle(goal, before)
-      else if clock.now() > goal.until then
+  private def steer(goal: Goal, before: Option[Move]): Future[Unit] =
+    look().flatMap: state =>
+      val isHeld = goal.isHeld(state)
+      val late   = Option.when(!isHeld && clock.now() > goal.until):
         val off = (state.positionNed - goal.placeNed).norm
-        park(before).map(_ =>
-          Left(
-            s"'$name' did not come to rest at its start: ${off.fixed(1)} m off, at " +
-              s"${state.velocityNed.norm.fixed(2)} m/s; is something in its way?"
-          )
-        )
-      else
-        val velocity = GoTo.velocityNed(state.positionNed, state.velocityNed, goal.placeNed, Cruise)
-        val move     = vehicle.act(Action.Velocity(velocity, Yaw.Towards(Radians(0))), Lasts)
-        for
-          ended <- replaced(before)
-          next  <- ended match
-            case Some(error) => Future.successful(Left(error.message))
-            case None        => after(Every.toDuration)(steer(goal, Some(move)))
-        yield next
+        s"'$name' did not come to rest at its start: ${off.fixed(1)} m off, at " +
+          s"${state.velocityNed.norm.fixed(2)} m/s; is something in its way?"
+      calledOff().orElse(late) match
+        case Some(why)      => park(before).transform(_ => Failure(CannotFly(why)))
+        case None if isHeld => settle(goal, before)
+        case None           =>
+          val velocity = GoTo.velocityNed(state.positionNed, state.velocityNed, goal.placeNed, Cruise)
+          val move     = vehicle.act(Action.Velocity(velocity, Yaw.Towards(Radians(0))), Lasts)
+          replaced(before).flatMap(_ => after(Every.toDuration)(steer(goal, Some(move))))
 
   /** Commands the vehicle to hover, and checks whether it stays at the goal. */
-  private def settle(goal: Goal, before: Option[Move]): Future[Either[String, Kinematics]] =
-    def watch(looks: Int, good: Int): Future[Either[String, Kinematics]] = look: state =>
+  private def settle(goal: Goal, before: Option[Move]): Future[Unit] =
+    def watch(looks: Int, good: Int): Future[Unit] = look().flatMap: state =>
       val stays = if goal.isHeld(state) then good + 1 else 0
-      val over  = calledOff()
-      if over.isDefined then Future.successful(Left(over.get))
-      else if stays == GoodLooks then Future.successful(Right(state))
-      else if looks == 1 then steer(goal, None)
-      else after(Every.toDuration)(watch(looks - 1, stays))
-    park(before).flatMap:
-      case Some(error) => Future.successful(Left(error.message))
-      case None        => watch(Looks, 0)
+      calledOff() match
+        case Some(why)                  => Future.failed(CannotFly(why))
+        case None if stays == GoodLooks => Future.unit
+        case None if looks == 1         => steer(goal, None)
+        case None                       => after(Every.toDuration)(watch(looks - 1, stays))
+    park(before).flatMap(_ => watch(Looks, 0))
 
-  private def park(before: Option[Move]): Future[Option[VehicleError]] =
-    val hover = vehicle.hover()
-    for
-      moved <- replaced(before)
-      hangs <- hover
-    yield moved.orElse(hangs.left.toOption)
+  /** Commands the vehicle to hover, and waits for the end of its last move and for this answer. */
+  private def park(before: Option[Move]): Future[Unit] =
+    val hover = replaced(Some(vehicle.hover()))
+    replaced(before).transformWith(moved => hover.transform(hangs => moved.flatMap(_ => hangs)))
 
-  private def replaced(move: Option[Move]): Future[Option[VehicleError]] =
-    move.fold(Future.successful(None))(_.map(_.left.toOption))
+  private def replaced(move: Option[Move]): Future[Unit] =
+    move.fold(Future.unit)(CannotFly.unless(_)(_.message).map(_ => ()))
 
-  private def look(next: Kinematics => Future[Either[String, Kinematics]])
-      : Future[Either[String, Kinematics]] =
-    val seen = truth.fold(vehicle.read().map(_.map(_.value).left.map(_.message)))(_())
-    seen.flatMap(_.fold(mistake => Future.successful(Left(mistake)), next))
+  private def look(): Future[Kinematics] =
+    truth.fold(CannotFly.unless(vehicle.read())(_.message).map(_.value))(_())
 
 private[flight] object Approach:
   private type Move = Future[Either[VehicleError, Boolean]]

@@ -83,13 +83,11 @@ private[skein] final class CameraSensor(
         newestSeen = Some(seen)
         // Measurements from before a restart of the simulator do not hold after it.
         (camera.restarts, seen.measured)
-      .via(Fuse(eye.fusion)((_, _) =>
-        note(EventKind.Dropped, s"${eye.sensor}: older than all that is known")
-      ))
+      .via(Fuse(eye.fusion)((_, _) => say(EventKind.Dropped, "older than all that is known")))
       .toMat(Sink.foreach((_, belief) => newest.set(newestSeen.map(_.told(belief)))))(Keep.both)
       .run()
     over.completeWith(end)
-    end.failed.foreach(error => note(EventKind.Aborted, s"${eye.sensor}: $error"))
+    end.failed.foreach(error => say(EventKind.Aborted, s"$error"))
 
   /** Requests no more images. Completes as [[ended]] does, so that the last results are recorded. */
   def close(): Future[Done] =
@@ -122,8 +120,7 @@ private[skein] final class CameraSensor(
                 fusion = joined
                 newest.set(Some(seen.told(belief)))
         .recover: error =>
-          lost.increment()
-          note(EventKind.Refused, s"${eye.sensor}: $error")
+          loses(EventKind.Refused, s"$error")
         .flatMap(_ => sensor.read())
 
   private def image() = camera
@@ -156,29 +153,25 @@ private[skein] final class CameraSensor(
       found += 1
       Seen(recognised.found.map(_ => image), polar, recognised.took, images, found)
 
-  private def skipped(what: Frames.Skipped[Any, Any]): Unit =
-    what match
-      case Frames.Skipped.Missed(frames) => missed.add(frames)
-      case _                             => lost.increment()
-    told(what)
-
-  private def told(what: Frames.Skipped[Any, Any]): Unit = what match
+  private def skipped(what: Frames.Skipped[Any, Any]): Unit = what match
     case Frames.Skipped.Missed(frames) =>
-      note(EventKind.Skipped, s"${eye.sensor}: $frames images not taken")
-    case Frames.Skipped.Failed(error) => note(EventKind.TimedOut, s"${eye.sensor}: $error")
-    case Frames.Skipped.Overtaken(_)  => note(EventKind.Dropped, s"${eye.sensor}: an image overtaken")
-    case Frames.Skipped.Repeated(_)   => note(EventKind.Dropped, s"${eye.sensor}: the same image again")
-    case Frames.Skipped.Replaced(_)   =>
-      note(EventKind.Dropped, s"${eye.sensor}: an image replaced by a newer one")
+      missed.add(frames)
+      say(EventKind.Skipped, s"$frames images not taken")
+    case Frames.Skipped.Failed(error) => loses(EventKind.TimedOut, s"$error")
+    case Frames.Skipped.Overtaken(_)  => loses(EventKind.Dropped, "an image overtaken")
+    case Frames.Skipped.Repeated(_)   => loses(EventKind.Dropped, "the same image again")
+    case Frames.Skipped.Replaced(_)   => loses(EventKind.Dropped, "an image replaced by a newer one")
 
-  private def unrecognised(what: Unrecognised[Any]): Unit =
+  private def unrecognised(what: Unrecognised[Any]): Unit = what match
+    case Unrecognised.Late(_)          => loses(EventKind.DeadlineMissed, "recognition was late")
+    case Unrecognised.Failed(_, cause) => loses(EventKind.Refused, s"$cause")
+    case Unrecognised.Overtaken(_)     => loses(EventKind.Dropped, "recognition overtaken")
+
+  private def loses(kind: EventKind, why: String): Unit =
     lost.increment()
-    told(what)
+    say(kind, why)
 
-  private def told(what: Unrecognised[Any]): Unit = what match
-    case Unrecognised.Late(_) => note(EventKind.DeadlineMissed, s"${eye.sensor}: recognition was late")
-    case Unrecognised.Failed(_, cause) => note(EventKind.Refused, s"${eye.sensor}: $cause")
-    case Unrecognised.Overtaken(_)     => note(EventKind.Dropped, s"${eye.sensor}: recognition overtaken")
+  private def say(kind: EventKind, what: String): Unit = note(kind, s"${eye.sensor}: $what")
 
 private[skein] object CameraSensor:
 

@@ -1,6 +1,6 @@
 package skein.flight
 
-import scala.concurrent.Future
+import scala.concurrent.{ExecutionContext, Future}
 import skein.port.{SteppedTime, VehiclePort}
 import skein.signal.ClockAlignment
 
@@ -29,3 +29,8 @@ private[flight] final case class ConnectedFleet(
 
 /** A flight cannot be started; the reason is a line for the user. */
 private[flight] final case class CannotFly(reason: String) extends RuntimeException(reason)
+
+private[flight] object CannotFly:
+  /** The value of an answer; an error fails with the line that `why` makes of it. */
+  def unless[E, A](answer: Future[Either[E, A]])(why: E => String)(using ExecutionContext): Future[A] =
+    answer.map(_.fold(error => throw CannotFly(why(error)), identity))

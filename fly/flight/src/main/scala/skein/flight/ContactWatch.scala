@@ -11,9 +11,9 @@ import skein.units.Decimals.fixed
 /** Requests each vehicle's contacts from the simulator once a period, and records them. It uses a separate
   * connection without the link, since this is not part of the flight.
   */
-private[flight] final class ContactWatch private (
+private[flight] final class ContactWatch(
     client: AirSimClient,
-    vehicles: Vector[VehicleClient],
+    watched: Vector[VehicleClient],
     period: Span,
     clock: Clock,
     recorder: Recorder
@@ -21,8 +21,12 @@ private[flight] final class ContactWatch private (
   import ContactWatch.*
   import system.dispatcher
 
+  private val vehicles         = watched.map(_.over(client))
   @volatile private var closed = false
   private var last             = vehicles.map(_ => Option.empty[Collision])
+
+  /** Starts the watch; contacts before its start do not count. */
+  def start(): Future[Unit] = ask().map(_ => goOn())
 
   private def ask(): Future[Vector[Option[Collision]]] =
     Future.traverse(vehicles): vehicle =>
@@ -50,21 +54,6 @@ private[flight] final class ContactWatch private (
     ask().map(note).transformWith(_ => client.close())
 
 private[flight] object ContactWatch:
-
-  /** Starts the watch; contacts before its start do not count. */
-  def start(
-      client: AirSimClient,
-      vehicles: Vector[VehicleClient],
-      period: Span,
-      clock: Clock,
-      recorder: Recorder
-  )(using system: ActorSystem): Future[ContactWatch] =
-    import system.dispatcher
-    val asked = vehicles.map(_.over(client))
-    val watch = ContactWatch(client, asked, period, clock, recorder)
-    watch.ask().map: _ =>
-      watch.goOn()
-      watch
 
   /** Contacts with an object within this time of each other count as one. */
   val Within: Span = Span.ofMillis(500)

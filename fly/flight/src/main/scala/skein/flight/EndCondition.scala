@@ -55,5 +55,4 @@ private[flight] final class EndCondition(
       )
       .map(one => one.seen.copy(age = now.since(one.at).max(Span.Zero)))
 
-  def failure: Future[RecordError]                  = recorder.failure
-  def close(): Future[Either[RecordError, Written]] = recorder.close()
+  export recorder.{close, failure}

@@ -1,7 +1,6 @@
 package skein.flight
 
 import java.util.concurrent.atomic.AtomicBoolean
-import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.Materializer
 import org.apache.pekko.stream.scaladsl.Flow
@@ -65,16 +64,6 @@ final class FlightAssembler(
   /** Whether other clients may command the vehicles too. */
   private val isShared = simulator.isDefined || elsewhere.isDefined
 
-  private val airSim = AirSimFleet(
-    transport,
-    clock,
-    settings,
-    startsAirborne = simulator.isEmpty,
-    calledOff,
-    isWatched,
-    tell
-  )
-
   /** Vehicles, starts and roles, equal in all flights; the policies are the plan's. */
   private val fleet: Fleet = settings.fleet
 
@@ -109,18 +98,20 @@ final class FlightAssembler(
       plan: FlightPlan,
       recorder: Recorder,
       on: Option[Materializer] = None
-  ): Future[Either[String, FlightAssembly]] =
-    val opened    = Opened()
-    val isAirSims = simulator.isDefined && settings.wire == Wire.AirSim
-    val monitor   = FlightMonitor(
+  ): Future[Either[String, FlightAssembly]] = Start(plan, recorder, on).begun()
+
+  private final class Start(plan: FlightPlan, recorder: Recorder, on: Option[Materializer]):
+    private val opened    = Opened()
+    private val isAirSims = simulator.isDefined && settings.wire == Wire.AirSim
+    private val monitor   = FlightMonitor(
       recorder,
       isStepped = plan.loop == LoopKind.Paused,
       hasPlaces = isAirSims && settings.sensors.isEmpty,
       movesLast = Option.when(isAirSims)(settings.loopSettings(plan).moveDuration)
     )
-    val isFlying = AtomicBoolean()
-    val isOver   = AtomicBoolean()
-    val sensing  = settings.sensors.map: noise =>
+    private val isFlying = AtomicBoolean()
+    private val isOver   = AtomicBoolean()
+    private val sensing  = settings.sensors.map: noise =>
       SimulatedSensing(
         noise,
         SplitMix64.seedOf(plan.seed, -1),
@@ -131,296 +122,293 @@ final class FlightAssembler(
         ,
         () => isFlying.get
       )
-    val starting =
-      for
-        server <- serve(plan.seed, sensing)
-        _ = server.foreach(opened.closing(_)(_.close()))
-        _       <- notApart(plan).fold(Future.unit)(why => Future.failed(CannotFly(s"decentralised: $why")))
-        solver  <- solverOf(plan, opened, monitor)
-        reached <- elsewhere match
-          case Some(source) => fromSource(plan, source, opened)
-          case None         =>
-            settings.wire match
-              case Wire.AirSim => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
-              case Wire.Mavlink => overMavlink(plan, server, opened, monitor)
-        _ <- packets(plan, reached)
-        _ <- Team.missingSensor(fleet, reached.vehicles, settings.own).fold(reached.ping().map(_ => ()))(
-          missing =>
-            Future.failed(CannotFly(missing))
-        )
-      yield
-        val loopSettings =
-          settings.loopSettings(plan).copy(guidance = elsewhere.fold(ActionGuidance.of)(_.guidance))
-        val planners =
-          if plan.loop != LoopKind.Plan || solver.isDefined then PlanWorkers.none
-          else
-            opened.closing(workers(settings.planning)): threads =>
-              threads.close()
-              Future.successful(Done)
-        val endCondition = EndCondition(
-          settings.scenario,
-          plan.loop == LoopKind.Paused,
-          settings.isDecentralised(plan),
-          monitor
-        )
-        val flown = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
-        val hold  = Hold()
 
-        val network = settings.between.filter(_ => reached.apart.nonEmpty).map: link =>
-          val inScene = Moment(settings.world.scene, Vector.empty)
-          val seed    = SplitMix64.seedOf(plan.seed, FlySettings.MostControllers)
-          opened.closing(
-            VehicleNetwork(fleet.agents.map(_.name), link, seed, inScene.sees(_, _), clock, monitor)
-          )(_.close())
+    def begun(): Future[Either[String, FlightAssembly]] =
+      val starting =
+        for
+          server <- serve()
+          _ = server.foreach(opened.closing(_)(_.close()))
+          _       <- notApart.fold(Future.unit)(why => Future.failed(CannotFly(s"decentralised: $why")))
+          solver  <- connectedSolver
+          reached <- elsewhere match
+            case Some(source) => fromSource(source)
+            case None         =>
+              settings.wire match
+                case Wire.AirSim  => overAirSim(server.fold(simulator.get)(_.address)).connect()
+                case Wire.Mavlink => overMavlink(server)
+          _ <- packets(reached)
+          _ <- Team.missingSensor(fleet, reached.vehicles, settings.own).fold(reached.ping().map(_ => ()))(
+            missing =>
+              Future.failed(CannotFly(missing))
+          )
+        yield
+          val loopSettings =
+            settings.loopSettings(plan).copy(guidance = elsewhere.fold(ActionGuidance.of)(_.guidance))
+          val planners =
+            if plan.loop != LoopKind.Plan || solver.isDefined then PlanWorkers.none
+            else
+              opened.closingNow(workers(settings.planning))(_.close())
+          val endCondition = EndCondition(
+            settings.scenario,
+            plan.loop == LoopKind.Paused,
+            settings.isDecentralised(plan),
+            monitor
+          )
+          val flown = plan.policy.fold(plan.fleet(settings))(learning)
+          val hold  = Hold()
 
-        def team(vehicles: Vector[VehiclePort], only: Option[Int]) = Team(
-          flown,
-          vehicles,
-          clock,
-          endCondition,
-          loopSettings,
-          planners,
-          solver,
-          reached.clocks,
-          only,
-          hold,
-          only.flatMap(self => network.map(_.of(self)))
-        )
-        val teams =
-          if reached.apart.isEmpty then Vector(team(reached.vehicles, None))
-          else reached.apart.map(one => team(one.vehicles, Some(one.self)))
-        isFlying.set(true)
-        val startedAt = clock.now()
-        val watchdog  = SimulatorWatchdog(
-          monitor,
-          clock,
-          startedAt,
-          SimulatorWatchdog.within(settings.period, Asking.Timeout),
-          reached.where,
-          reached.isOther,
-          reached.ping,
-          isShared,
-          () => teams.flatMap(_.underDecision).minByOption(_.since),
-          line => tell(s"${plan.id}: $line")
-        )
-        val flight = Flight.start(
-          plan.loop,
-          teams.head,
-          reached.time.map(FlightAssembler.noting(_, () => isOver.set(true))),
-          settings.duration,
-          clock,
-          endCondition,
-          () => watchdog.onTime,
-          on,
-          teams.tail
-        )
-        flight.ending.foreach(_ => isOver.set(true))
-        endCondition.isOver.foreach(_ => flight.complete())
-        if plan.loop != LoopKind.Paused then
-          for one <- reached.cameras do
-            opened.closing(one)(_.close()): Unit
-            one.run()
-          for one <- reached.films do
-            opened.closing(one)(_.close()): Unit
-            one.run()
-        watchdog.over(flight)
-        Right(FlightAssembly(
-          plan,
-          flight,
-          RunningGraph(
-            teams.head.meters,
-            flight.streams,
-            reached.apart.headOption.map(one => fleet.agents(one.self).name)
-          ),
-          hold,
-          monitor,
-          watchdog,
-          startedAt,
-          clock,
-          () => opened.close(),
-          solver
-        ))
-    starting
-      .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
-      .recover { case error: (TransportError | CannotFly | SolverClient.NoSolver) => Left(error.getMessage) }
+          val network = settings.between.filter(_ => reached.apart.nonEmpty).map: link =>
+            val inScene = Moment(settings.world.scene, Vector.empty)
+            val seed    = SplitMix64.seedOf(plan.seed, FlySettings.MostControllers)
+            opened.closing(
+              VehicleNetwork(fleet.agents.map(_.name), link, seed, inScene.sees(_, _), clock, monitor)
+            )(_.close())
 
-  /** The remote solver of the flight, after it has accepted the flight. */
-  private def solverOf(
-      plan: FlightPlan,
-      opened: Opened,
-      monitor: FlightMonitor
-  ): Future[Option[SolverClient]] =
-    plan.solver match
-      case None         => Future.successful(None)
-      case Some(choice) =>
-        solvers.link(choice) match
-          case Left(reason) => Future.failed(CannotFly(s"--solver ${choice.text}: $reason"))
-          case Right(link)  =>
-            val agents = fleet.agents
-            val client = opened.closing(SolverClient(
-              link,
-              solvers.number(plan, clock),
-              solvers.build,
-              Briefing.of(settings, plan),
-              agents.size,
-              clock,
-              (kind, vehicle, detail, count) =>
-                val (who, what) = (vehicle.map(agents(_).name), Some(EventSubject.Solver))
-                monitor.offer(Event(clock.now(), kind, who, detail, about = what, count = count))
-                if FlightAssembler.told(kind) then tell(s"${plan.id}: $detail")
-            ))(_.close())
-            val waits = system.scheduler.scheduleOnce(solvers.toldAfter.toDuration):
-              val most = solvers.patience.toSeconds.brief
-              tell(s"${plan.id}: waits for --solver ${choice.text}, $most s at most: ${client.whyNone}")
-            unlessCalledOff(plan)(client.ready(solvers.patience))
-              .andThen(_ => waits.cancel())
-              .recoverWith:
-                case no: SolverClient.NoSolver =>
-                  Future.failed(CannotFly(s"--solver ${choice.text}: ${no.reason}"))
-              .map(_ => Some(client))
+          def team(vehicles: Vector[VehiclePort], only: Option[Int]) = Team(
+            flown,
+            vehicles,
+            clock,
+            endCondition,
+            loopSettings,
+            planners,
+            solver,
+            reached.clocks,
+            only,
+            hold,
+            only.flatMap(self => network.map(_.of(self)))
+          )
+          val teams =
+            if reached.apart.isEmpty then Vector(team(reached.vehicles, None))
+            else reached.apart.map(one => team(one.vehicles, Some(one.self)))
+          isFlying.set(true)
+          val startedAt = clock.now()
+          val watchdog  = SimulatorWatchdog(
+            monitor,
+            clock,
+            startedAt,
+            SimulatorWatchdog.within(settings.period, Asking.Timeout),
+            reached.where,
+            reached.isOther,
+            reached.ping,
+            isShared,
+            () => teams.flatMap(_.underDecision).minByOption(_.since),
+            line => tell(s"${plan.id}: $line")
+          )
+          val flight = Flight.start(
+            plan.loop,
+            teams.head,
+            reached.time.map(FlightAssembler.noting(_, () => isOver.set(true))),
+            settings.duration,
+            clock,
+            endCondition,
+            () => watchdog.onTime,
+            on,
+            teams.tail
+          )
+          flight.ending.foreach(_ => isOver.set(true))
+          endCondition.isOver.foreach(_ => flight.complete())
+          if plan.loop != LoopKind.Paused then
+            for one <- reached.cameras do
+              opened.closing(one)(_.close()): Unit
+              one.run()
+            for one <- reached.films do
+              opened.closing(one)(_.close()): Unit
+              one.run()
+          watchdog.over(flight)
+          Right(FlightAssembly(
+            plan,
+            flight,
+            RunningGraph(
+              teams.head.meters,
+              flight.streams,
+              reached.apart.headOption.map(one => fleet.agents(one.self).name)
+            ),
+            hold,
+            monitor,
+            watchdog,
+            startedAt,
+            clock,
+            () => opened.close(),
+            solver
+          ))
+      starting
+        .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
+        .recover { case error: (TransportError | CannotFly | SolverClient.NoSolver) =>
+          Left(error.getMessage)
+        }
 
-  private def unlessCalledOff[A](plan: FlightPlan)(waiting: Future[A]): Future[A] =
-    val ready = Promise[A]().completeWith(waiting)
-    val every = FlightAssembler.LookEvery.toDuration
-    val calls = system.scheduler.scheduleWithFixedDelay(every, every): () =>
-      calledOff(plan.id).foreach(why => ready.tryFailure(CannotFly(why)))
-    ready.future.andThen(_ => calls.cancel())
+    /** The remote solver of the flight, after it has accepted the flight. */
+    private def connectedSolver: Future[Option[SolverClient]] =
+      plan.solver match
+        case None         => Future.successful(None)
+        case Some(choice) =>
+          solvers.link(choice) match
+            case Left(reason) => Future.failed(CannotFly(s"--solver ${choice.text}: $reason"))
+            case Right(link)  =>
+              val agents = fleet.agents
+              val client = opened.closing(SolverClient(
+                link,
+                solvers.number(plan, clock),
+                solvers.build,
+                Briefing.of(settings, plan),
+                agents.size,
+                clock,
+                (kind, vehicle, detail, count) =>
+                  val (who, what) = (vehicle.map(agents(_).name), Some(EventSubject.Solver))
+                  monitor.offer(Event(clock.now(), kind, who, detail, about = what, count = count))
+                  if FlightAssembler.told(kind) then tell(s"${plan.id}: $detail")
+              ))(_.close())
+              val waits = system.scheduler.scheduleOnce(solvers.toldAfter.toDuration):
+                val most = solvers.patience.toSeconds.brief
+                tell(s"${plan.id}: waits for --solver ${choice.text}, $most s at most: ${client.whyNone}")
+              unlessCalledOff(client.ready(solvers.patience))
+                .andThen(_ => waits.cancel())
+                .recoverWith:
+                  case no: SolverClient.NoSolver =>
+                    Future.failed(CannotFly(s"--solver ${choice.text}: ${no.reason}"))
+                .map(_ => Some(client))
 
-  /** The fleet with policies that may learn during the flight. */
-  private def learning(
-      plan: FlightPlan,
-      chosen: ChosenPolicy,
-      opened: Opened,
-      monitor: FlightMonitor
-  ): Fleet =
-    def taught(lessons: Lessons, explore: Double) =
-      chosen.learningIn(plan.fleet(settings), lessons, explore, plan.seed, settings.period):
-        (vehicle, decision, news) =>
-          RecordedPlan.learned(clock.now(), vehicle, decision, news).foreach(monitor.offer)
-    chosen.learning match
-      case None                                  => plan.fleet(settings)
-      case Some(Learning.Again(explore, news))   => taught(LessonsAgain(news), explore)
-      case Some(Learning.Beside(explore, begun)) =>
-        val on = learnsOn.getOrElse:
-          val thread = BackgroundExecutor("skein-learn")
-          // It may hang in a lesson, which is not awaited.
-          opened.closing(ExecutionContext.fromExecutor(thread)): _ =>
-            thread.close()
-            Future.successful(Done)
-        val lessons = opened.closing(LessonsBeside(begun(plan.seed), on)): lessons =>
-          lessons.close()
-          Future.successful(Done)
-        taught(lessons, explore)
+    private def unlessCalledOff[A](waiting: Future[A]): Future[A] =
+      val ready = Promise[A]().completeWith(waiting)
+      val every = FlightAssembler.LookEvery.toDuration
+      val calls = system.scheduler.scheduleWithFixedDelay(every, every): () =>
+        calledOff(plan.id).foreach(why => ready.tryFailure(CannotFly(why)))
+      ready.future.andThen(_ => calls.cancel())
 
-  /** Connects over MAVLink: to the flight's own simulator by a byte stream, to any other by datagrams unless
-    * configured otherwise.
-    */
-  private def overMavlink(
-      plan: FlightPlan,
-      server: Option[SimulatorServer],
-      opened: Opened,
-      monitor: FlightMonitor
-  ): Future[ConnectedFleet] =
-    val at      = server.flatMap(_.peerAddresses.headOption).orElse(simulator).get
-    val isTcp   = server.isDefined || isMavlinkByTcp
-    val by      = if isTcp then transport else UdpTransport()
-    def plain() = by.connect(at)
-    def linked: Flow[ByteString, ByteString, ?] =
-      if plan.link == LatencyProfile.none then plain()
-      else
-        EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
-          .connection(TransportError.Lost(at, "the link broke"), isDatagrams = !isTcp)
-          .join(plain())
-    val origin  = server.map(_ => WorldSettings.DefaultOrigin)
-    val mavlink =
-      MavlinkFleet(fleet, clock, origin, plain, isDatagrams = !isTcp, () => calledOff(plan.id))
-    def right[A](answer: Either[String, A]): A = answer.fold(reason => throw CannotFly(reason), identity)
-    for
-      _ <-
-        if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps("MAVLink")))
-        else Future.unit
-      _                <- mavlink.prepare().map(right)
-      (link, vehicles) <- mavlink.open(linked).map(right)
-    yield
-      val _       = opened.closing(link)(_.close())
-      val custody = MavlinkCustody(
-        fleet.agents.map(_.name).zip(vehicles).map((name, vehicle) => (name, () => vehicle.taken)),
-        monitor.isLanding
-      )
-      ConnectedFleet(
-        vehicles,
-        None,
-        at.toString,
-        () => vehicles.head.read().map(_.isRight),
-        () => Future.successful(Right(custody.check())),
-        clocks = link.clocks
-      )
+    /** The fleet with policies that may learn during the flight. */
+    private def learning(chosen: ChosenPolicy): Fleet =
+      def taught(lessons: Lessons, explore: Double) =
+        chosen.learningIn(plan.fleet(settings), lessons, explore, plan.seed, settings.period):
+          (vehicle, decision, news) =>
+            RecordedPlan.learned(clock.now(), vehicle, decision, news).foreach(monitor.offer)
+      chosen.learning match
+        case None                                  => plan.fleet(settings)
+        case Some(Learning.Again(explore, news))   => taught(LessonsAgain(news), explore)
+        case Some(Learning.Beside(explore, begun)) =>
+          val on = learnsOn.getOrElse:
+            val thread = BackgroundExecutor("skein-learn")
+            // It may hang in a lesson, which is not awaited.
+            opened.closingNow(ExecutionContext.fromExecutor(thread))(_ => thread.close())
+          val lessons = opened.closingNow(LessonsBeside(begun(plan.seed), on))(_.close())
+          taught(lessons, explore)
 
-  /** Why each vehicle cannot have a controller of its own in this flight, if it should. */
-  private def notApart(plan: FlightPlan): Option[String] =
-    if !settings.isDecentralised(plan) then None
-    else
-      elsewhere
-        .map(source => s"expected vehicles over AirSim's protocol, got those of ${source.where}")
-        .orElse:
-          Option.when(plan.policy.exists(_.learning.isDefined)):
-            "expected policies that do not learn in flight, which is one learner for all"
+    private def overAirSim(at: Address): AirSimFleet = AirSimFleet(
+      transport,
+      clock,
+      settings,
+      plan,
+      at,
+      opened,
+      monitor,
+      startsAirborne = simulator.isEmpty,
+      () => calledOff(plan.id),
+      isWatched,
+      tell
+    )
 
-  /** Requests whether the vehicles hold plans, if the flight sends them. */
-  private def packets(plan: FlightPlan, reached: ConnectedFleet): Future[Unit] =
-    if !settings.loopSettings(plan).planInPacket then Future.unit
-    else if plan.policy.exists(_.learning.isDefined) then
-      Future.failed(CannotFly("plan-in-packet: expected policies that do not learn in flight"))
-    else
-      // An outage that just happens says nothing of the vehicles.
-      def certain(answer: Either[VehicleError, Boolean]) = answer.fold(_.isCertain, _ => true)
-      Future.traverse(reached.vehicles)(one => UntilCertain(one.follow(CommandPlan.Question))(certain)).map:
-        answers =>
-          for error <- answers.flatMap(_.left.toOption).headOption do
-            if !error.isCertain then
-              throw CannotFly(
-                s"plan-in-packet: ${reached.where} did not say whether it takes plans: ${error.message}"
-              )
-            throw CannotFly(
-              "plan-in-packet: expected a buffer of plans beside the vehicles, as the built-in simulator has and " +
-                s"`skein link --buffer` puts before AirSim, got ${reached.where}: ${error.message}"
-            )
-
-  private def fromSource(plan: FlightPlan, source: VehicleSource, opened: Opened): Future[ConnectedFleet] =
-    if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps(source.where)))
-    else if plan.link.bandwidth.isDefined then
-      Future.failed(CannotFly(
-        s"expected a link without a rate to ${source.where}, whose messages have no known size, got ${plan.link.name}"
-      ))
-    else
-      SourceFleet(source, fleet, clock, () => calledOff(plan.id)).connect(opened).map: reached =>
-        if plan.link == LatencyProfile.none then reached
+    /** Connects over MAVLink: to the flight's own simulator by a byte stream, to any other by datagrams
+      * unless configured otherwise.
+      */
+    private def overMavlink(server: Option[SimulatorServer]): Future[ConnectedFleet] =
+      val at      = server.flatMap(_.peerAddresses.headOption).orElse(simulator).get
+      val isTcp   = server.isDefined || isMavlinkByTcp
+      val by      = if isTcp then transport else UdpTransport()
+      def plain() = by.connect(at)
+      def linked: Flow[ByteString, ByteString, ?] =
+        if plan.link == LatencyProfile.none then plain()
         else
-          reached.copy(vehicles = reached.vehicles.zipWithIndex.map: (vehicle, line) =>
-            LinkedVehicle(vehicle, plan.link, plan.seed, line, clock))
-
-  private def serve(seed: Long, sensing: Option[SimulatedSensing]): Future[Option[SimulatorServer]] =
-    if isShared then Future.successful(None)
-    else
-      val vehicles = fleet.agents.map(Vehicles.settings)
-      val kind     = settings.plant.kind(seed).fold(reason => throw CannotFly(reason), identity)
-      SimulatorServer
-        .start(
-          SimulatorSettings(
-            WorldSettings.of(vehicles, settings.scenario.equipment),
-            FlightAssembler.anyPort,
-            scene = settings.world.scene,
-            mavlink =
-              Option.when(settings.wire == Wire.Mavlink)(MavlinkSettings(listen =
-                Some(FlightAssembler.anyPort)
-              )),
-            kind = kind,
-            sensing = sensing
-          ),
-          transport,
-          clock
+          EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
+            .connection(TransportError.Lost(at, "the link broke"), isDatagrams = !isTcp)
+            .join(plain())
+      val origin  = server.map(_ => WorldSettings.DefaultOrigin)
+      val mavlink =
+        MavlinkFleet(fleet, clock, origin, plain, isDatagrams = !isTcp, () => calledOff(plan.id))
+      for
+        _ <-
+          if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps("MAVLink")))
+          else Future.unit
+        _                <- mavlink.prepare()
+        (link, vehicles) <- mavlink.open(linked)
+      yield
+        val _       = opened.closing(link)(_.close())
+        val custody = MavlinkCustody(
+          fleet.agents.map(_.name).zip(vehicles).map((name, vehicle) => (name, () => vehicle.taken)),
+          monitor.isLanding
         )
-        .map(Some(_))
+        ConnectedFleet(
+          vehicles,
+          None,
+          at.toString,
+          () => vehicles.head.read().map(_.isRight),
+          () => Future.successful(Right(custody.check())),
+          clocks = link.clocks
+        )
+
+    /** Why each vehicle cannot have a controller of its own in this flight, if it should. */
+    private def notApart: Option[String] =
+      if !settings.isDecentralised(plan) then None
+      else
+        elsewhere
+          .map(source => s"expected vehicles over AirSim's protocol, got those of ${source.where}")
+          .orElse:
+            Option.when(plan.policy.exists(_.learning.isDefined)):
+              "expected policies that do not learn in flight, which is one learner for all"
+
+    /** Requests whether the vehicles hold plans, if the flight sends them. */
+    private def packets(reached: ConnectedFleet): Future[Unit] =
+      if !settings.loopSettings(plan).planInPacket then Future.unit
+      else if plan.policy.exists(_.learning.isDefined) then
+        Future.failed(CannotFly("plan-in-packet: expected policies that do not learn in flight"))
+      else
+        // An outage that just happens says nothing of the vehicles.
+        def certain(answer: Either[VehicleError, Boolean]) = answer.fold(_.isCertain, _ => true)
+        Future.traverse(reached.vehicles)(one => UntilCertain(one.follow(CommandPlan.Question))(certain)).map:
+          answers =>
+            for error <- answers.flatMap(_.left.toOption).headOption do
+              if !error.isCertain then
+                throw CannotFly(
+                  s"plan-in-packet: ${reached.where} did not say whether it takes plans: ${error.message}"
+                )
+              throw CannotFly(
+                "plan-in-packet: expected a buffer of plans beside the vehicles, as the built-in simulator has and " +
+                  s"`skein link --buffer` puts before AirSim, got ${reached.where}: ${error.message}"
+              )
+
+    private def fromSource(source: VehicleSource): Future[ConnectedFleet] =
+      if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps(source.where)))
+      else if plan.link.bandwidth.isDefined then
+        Future.failed(CannotFly(
+          s"expected a link without a rate to ${source.where}, whose messages have no known size, got ${plan.link.name}"
+        ))
+      else
+        SourceFleet(source, fleet, clock, () => calledOff(plan.id)).connect(opened).map: reached =>
+          if plan.link == LatencyProfile.none then reached
+          else
+            reached.copy(vehicles = reached.vehicles.zipWithIndex.map: (vehicle, line) =>
+              LinkedVehicle(vehicle, plan.link, plan.seed, line, clock))
+
+    private def serve(): Future[Option[SimulatorServer]] =
+      if isShared then Future.successful(None)
+      else
+        val vehicles = fleet.agents.map(Vehicles.settings)
+        val kind     = settings.plant.kind(plan.seed).fold(reason => throw CannotFly(reason), identity)
+        SimulatorServer
+          .start(
+            SimulatorSettings(
+              WorldSettings.of(vehicles, settings.scenario.equipment),
+              FlightAssembler.anyPort,
+              scene = settings.world.scene,
+              mavlink =
+                Option.when(settings.wire == Wire.Mavlink)(MavlinkSettings(listen =
+                  Some(FlightAssembler.anyPort)
+                )),
+              kind = kind,
+              sensing = sensing
+            ),
+            transport,
+            clock
+          )
+          .map(Some(_))
 
 object FlightAssembler:
   /** Planning threads, no more than there are cores. */

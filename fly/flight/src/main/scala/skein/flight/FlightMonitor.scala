@@ -48,8 +48,7 @@ final class FlightMonitor(
       case _                                                    => ()
     recorder.offer(record)
 
-  def failure: Future[RecordError]                  = recorder.failure
-  def close(): Future[Either[RecordError, Written]] = recorder.close()
+  export recorder.{close, failure}
 
   def late: Option[Event] = lastLate
 

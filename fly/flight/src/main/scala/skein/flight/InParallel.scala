@@ -1,6 +1,6 @@
 package skein.flight
 
-import java.util.concurrent.{Callable, ExecutionException, ExecutorCompletionService, Executors, Future}
+import java.util.concurrent.{ExecutionException, ExecutorCompletionService, Executors, Future}
 
 /** Runs work on separate threads. An exception of one is thrown to the caller, and no further work is
   * started. Blocks. Too slow for pieces of work that take microseconds.
@@ -18,22 +18,17 @@ private[skein] object InParallel:
     * infinite: the next element is taken when one has ended.
     */
   def asTheyCome[A, B](all: Iterator[A], threads: Int)(one: A => B)(use: B => Unit): Unit =
-    val pool                  = Executors.newFixedThreadPool(threads)
-    val ended                 = ExecutorCompletionService[B](pool)
-    def submit(each: A): Unit =
-      val work: Callable[B] = () => one(each)
-      val _                 = ended.submit(work)
+    val pool                 = Executors.newFixedThreadPool(threads)
+    val ended                = ExecutorCompletionService[B](pool)
+    def submitted(): Boolean = all.hasNext && {
+      val each = all.next()
+      ended.submit(() => one(each)) != null
+    }
     try
-      var underWay = 0
-      while all.hasNext && underWay < threads do
-        submit(all.next())
-        underWay += 1
+      var underWay = (0 until threads).count(_ => submitted())
       while underWay > 0 do
         val came = result(ended.take())
-        underWay -= 1
-        if all.hasNext then
-          submit(all.next())
-          underWay += 1
+        if !submitted() then underWay -= 1
         use(came)
     finally
       val _ = pool.shutdownNow()

@@ -8,7 +8,7 @@ import scala.util.Try
 import scala.util.control.NonFatal
 import skein.link.FavouredThread
 import skein.loop.RunningGraph
-import skein.record.{DuckDbRecorder, ObservedRecorder, Recordable, RecordingHeader, RowSink}
+import skein.record.{DuckDbRecorder, ObservedRecorder, Recordable, Recorder, RecordingHeader, RowSink}
 import skein.settings.FlightPlan
 
 /** Flights in real time, side by side, each with its own recording in `folder`. */
@@ -68,8 +68,43 @@ object LiveFlights:
       abandoned: Future[String] = Future.never
   )(using system: ActorSystem): Future[Either[String, LiveFlights]] =
     import system.dispatcher
+    def begin(plan: FlightPlan): Future[Either[String, FlightAssembly]] =
+      val heading = assembler.heading(plan, clockKind = "real")
+      beside(plan, heading) match
+        case Left(reason) => Future.successful(Left(reason))
+        case Right(sinks) =>
+          val threads = FavouredThread.factory("skein-record")
+          DuckDbRecorder
+            .open(plan.file(folder), heading, beside = sinks, threads = threads)
+            .flatMap:
+              case Left(error)     => Future.successful(Left(error.message))
+              case Right(recorder) => record(plan, recorder, observe(heading))
+
+    def record(plan: FlightPlan, recorder: Recorder, observer: Recordable => Unit) =
+      // It lives as long as the flight, whose graph can be requested until then.
+      val own      = Materializer(system)
+      val starting = assembler
+        .start(plan, ObservedRecorder(recorder, observer, assembler.keeps), Some(own))
+        .recover { case NonFatal(error) => Left(s"it could not be started: $error") }
+      val begun = Promise[Either[String, FlightAssembly]]()
+      abandoned.foreach(why => begun.trySuccess(Left(why)))
+      starting.foreach: answer =>
+        // After it was abandoned, it must not fly.
+        if !begun.trySuccess(answer) then answer.foreach(_.flight.stop())
+      begun.future.flatMap:
+        case Left(reason) =>
+          own.shutdown()
+          recorder
+            .close()
+            .map: _ =>
+              unmade(plan.file(folder))
+              Left(s"${plan.id}: $reason")
+        case started =>
+          for assembly <- started do assembly.landed.onComplete(_ => own.shutdown())
+          Future.successful(started)
+
     Future
-      .sequence(plans.map(start(assembler, _, folder, observe, beside, abandoned)))
+      .sequence(plans.map(begin))
       .flatMap: started =>
         val flying = started.collect { case Right(assembly) => assembly }
         started.collectFirst { case Left(reason) => reason } match
@@ -81,49 +116,6 @@ object LiveFlights:
               .map: _ =>
                 flying.foreach(assembly => unmade(assembly.plan.file(folder)))
                 Left(reason)
-
-  private def start(
-      assembler: FlightAssembler,
-      plan: FlightPlan,
-      folder: Path,
-      observe: RecordingHeader => Recordable => Unit,
-      beside: (FlightPlan, RecordingHeader) => Either[String, Vector[RowSink]],
-      abandoned: Future[String]
-  )(using system: ActorSystem): Future[Either[String, FlightAssembly]] =
-    import system.dispatcher
-    val heading = assembler.heading(plan, clockKind = "real")
-    val opened  = beside(plan, heading) match
-      case Left(reason) => Future.successful(Left(reason))
-      case Right(sinks) =>
-        DuckDbRecorder
-          .open(plan.file(folder), heading, beside = sinks, threads = FavouredThread.factory("skein-record"))
-          .map(_.left.map(_.message))
-    opened
-      .flatMap:
-        case Left(reason)    => Future.successful(Left(reason))
-        case Right(recorder) =>
-          // It lives as long as the flight, whose graph can be requested until then.
-          val own      = Materializer(system)
-          val starting = assembler
-            .start(plan, ObservedRecorder(recorder, observe(heading), assembler.keeps), Some(own))
-            .recover { case NonFatal(error) => Left(s"it could not be started: $error") }
-          val begun = Promise[Either[String, FlightAssembly]]()
-          abandoned.foreach(why => begun.trySuccess(Left(why)))
-          starting.foreach: answer =>
-            // After it was abandoned, it must not fly.
-            if !begun.trySuccess(answer) then answer.foreach(_.flight.stop())
-          begun.future
-            .flatMap:
-              case Left(reason) =>
-                own.shutdown()
-                recorder
-                  .close()
-                  .map: _ =>
-                    unmade(plan.file(folder))
-                    Left(s"${plan.id}: $reason")
-              case started =>
-                for assembly <- started do assembly.landed.onComplete(_ => own.shutdown())
-                Future.successful(started)
 
   /** Deletes the recording of a flight that did not start: it would prevent the next attempt. */
   private def unmade(file: Path): Unit =

@@ -1,6 +1,5 @@
 package skein.flight
 
-import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.Flow
@@ -11,7 +10,7 @@ import skein.policy.Fleet
 import skein.port.VehicleError
 import skein.units.*
 
-/** A scenario's vehicles over MAVLink, the first with system id 1.
+/** A scenario's vehicles over MAVLink, the first with system id 1. What fails, fails with [[CannotFly]].
   *
   * @param isDatagrams whether `connect` provides datagrams, and not pieces of a stream
   * @param calledOff why vehicles must no longer move to their starts
@@ -38,37 +37,25 @@ private[flight] final class MavlinkFleet(
     )
 
   /** Brings all to their starts, over a separate connection: this is not part of the flight. */
-  def prepare(): Future[Either[String, Done]] =
-    MavlinkLink.open(connect(), systems, clock, origin, settings, isDatagrams = isDatagrams).flatMap:
-      case Left(error) => Future.successful(Left(error.message))
-      case Right(link) =>
-        val starts = fleet.agents.zip(systems).map: (agent, number) =>
-          val vehicle = MavlinkVehicle(link, number)
-          StartPositioning.Starting(
-            agent.startPositionNed,
-            Approach(agent.name, vehicle, clock, calledOff),
-            () => leaveGround(vehicle)
-          )
-        StartPositioning
-          .fly(starts)
-          .map(_ => Right(Done))
-          .recover { case StartPositioning.NotReady(reason) => Left(reason) }
-          .transformWith(result => link.close().transform(_ => result))
+  def prepare(): Future[Unit] =
+    connected(connect(), settings).flatMap: link =>
+      val starts = fleet.agents.zip(systems).map: (agent, number) =>
+        val vehicle = MavlinkVehicle(link, number)
+        StartPositioning.Starting(
+          agent.startPositionNed,
+          Approach(agent.name, vehicle, clock, calledOff),
+          () => leaveGround(vehicle)
+        )
+      StartPositioning.fly(starts).transformWith(result => link.close().transform(_ => result))
 
   /** Opens the connection of the flight, and aligns the clocks over it before any decision. */
-  def open(
-      flow: Flow[ByteString, ByteString, ?]
-  ): Future[Either[String, (MavlinkLink, Vector[MavlinkVehicle])]] =
-    MavlinkLink
-      .open(
-        flow,
-        systems,
-        clock,
-        origin,
-        settings.copy(exchanges = Exchanges),
-        isDatagrams = isDatagrams
-      )
-      .map(_.left.map(_.message).map(link => (link, systems.map(MavlinkVehicle(link, _)))))
+  def open(flow: Flow[ByteString, ByteString, ?]): Future[(MavlinkLink, Vector[MavlinkVehicle])] =
+    connected(flow, settings.copy(exchanges = Exchanges)).map: link =>
+      (link, systems.map(MavlinkVehicle(link, _)))
+
+  private def connected(flow: Flow[ByteString, ByteString, ?], by: OffboardSettings): Future[MavlinkLink] =
+    val opening = MavlinkLink.open(flow, systems, clock, origin, by, isDatagrams = isDatagrams)
+    CannotFly.unless(opening)(_.message)
 
   private def leaveGround(vehicle: MavlinkVehicle): Future[Vector3] =
     for
@@ -82,11 +69,11 @@ private[flight] final class MavlinkFleet(
     asked(vehicle.read()).map(_.value.positionNed).flatMap: at =>
       if at.z < fromDownM - RisenM then Future.successful(at)
       else if looks == 0 then
-        Future.failed(StartPositioning.NotReady("a vehicle did not leave the ground in time"))
+        Future.failed(CannotFly("a vehicle did not leave the ground in time"))
       else after(LookEvery.toDuration, system.scheduler)(risen(vehicle, fromDownM, looks - 1))
 
   private def asked[A](answer: Future[Either[VehicleError, A]]): Future[A] =
-    answer.map(_.fold(error => throw StartPositioning.NotReady(error.message), identity))
+    CannotFly.unless(answer)(_.message)
 
 private object MavlinkFleet:
   /** Minimum height of the geofence above the highest start, and its distance from the farthest, m. */

@@ -13,6 +13,11 @@ private[skein] final class Opened(using ExecutionContext):
     val _ = closers.updateAndGet((() => close(resource)) :: _)
     resource
 
+  /** [[closing]] for a resource that closes immediately. */
+  def closingNow[A](resource: A)(close: A => Unit): A = closing(resource): opened =>
+    close(opened)
+    Future.successful(Done)
+
   /** Closes all in turn, even if one fails; fails with the first failure. */
   def close(): Future[Done] =
     closers.getAndSet(Nil).foldLeft(Future.successful[Done](Done)): (before, close) =>

@@ -24,7 +24,6 @@ final class Preparation(
 )(using
     system: ActorSystem
 ):
-  import StartPositioning.NotReady
   import Preparation.*
   import system.dispatcher
 
@@ -53,10 +52,9 @@ final class Preparation(
       commands: String => Boolean = _ => true
   ): Future[Either[String, Vector[VehicleClient]]] = prepared:
     for
-      paused <-
-        client.isPaused().map(_.fold(error => throw NotReady(AirSimError.ofFirst(error, at)), identity))
-      _   <- if paused then call(client.resume()) else Future.unit
-      all <- everyVehicle(fleet)((vehicle, agent) => Future.successful((vehicle, agent)))
+      paused <- CannotFly.unless(client.isPaused())(AirSimError.ofFirst(_, at))
+      _      <- if paused then call(client.resume()) else Future.unit
+      all    <- everyVehicle(fleet)((vehicle, agent) => Future.successful((vehicle, agent)))
       vehicles = all.filter((_, agent) => commands(agent.name))
       flying   = all.collect { case (multirotor: Multirotor, agent) => (multirotor, agent) }
       _ <- Future.traverse(vehicles.collect { case (car: Car, agent) => (car, agent) })(park)
@@ -70,15 +68,15 @@ final class Preparation(
                 AirSimVehicle(multirotor, _ => ()),
                 clock,
                 calledOff,
-                Option.when(byTruth)(() => multirotor.groundTruth().map(_.left.map(_.message)))
+                Option.when(byTruth)(() => call(multirotor.groundTruth()))
               ),
               () => leaveGround(multirotor)
             ),
           index => commands(flying(index)._2.name)
         )
         .recoverWith:
-          case failed: NotReady =>
-            taken(vehicles.map(_._1), at).map(why => throw why.fold(failed)(NotReady(_)))
+          case failed: CannotFly =>
+            taken(vehicles.map(_._1), at).map(why => throw why.fold(failed)(CannotFly(_)))
     yield all.map(_._1)
 
   /** Why the first vehicle without API control has lost it, if there is one. */
@@ -92,7 +90,7 @@ final class Preparation(
   private def park(car: Car, agent: Agent): Future[VehicleClient] =
     def stand(looks: Int): Future[Unit] = call(car.status()).flatMap: status =>
       if math.abs(status.value.speed.value) <= StillMps then Future.unit
-      else if looks == 0 then Future.failed(NotReady(s"'${car.name}' does not come to a stand"))
+      else if looks == 0 then Future.failed(CannotFly(s"'${car.name}' does not come to a stand"))
       else after(Every.toDuration)(stand(looks - 1))
     for
       _ <- call(car.enableApiControl())
@@ -119,18 +117,13 @@ final class Preparation(
 
   private def everyVehicle[A](fleet: Fleet)(use: (VehicleClient, Agent) => Future[A]): Future[Vector[A]] =
     Future.traverse(fleet.agents): agent =>
-      Vehicles
-        .named(client, agent.name, agent.kind)
-        .flatMap:
-          case Left(error)    => Future.failed(NotReady(error.message))
-          case Right(vehicle) => use(vehicle, agent)
+      CannotFly.unless(Vehicles.named(client, agent.name, agent.kind))(_.message).flatMap(use(_, agent))
 
   private def prepared[A](preparing: => Future[A]): Future[Either[String, A]] =
-    preparing.map(Right(_)).recover { case NotReady(reason) => Left(reason) }
+    preparing.map(Right(_)).recover { case CannotFly(reason) => Left(reason) }
 
-  private def call[A](answer: Future[Either[RpcError, A]]): Future[A] = answer.map:
-    case Right(value) => value
-    case Left(error)  => throw NotReady(AirSimError.Call(error).message)
+  private def call[A](answer: Future[Either[RpcError, A]]): Future[A] =
+    CannotFly.unless(answer)(_.message)
 
 object Preparation:
   /** Speed below which AirSim's car counts as standing, m/s. */

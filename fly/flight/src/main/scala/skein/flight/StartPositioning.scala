@@ -10,17 +10,14 @@ import skein.units.Vector3
 private[flight] object StartPositioning:
   /** A vehicle on its way to its start, world NED.
     *
-    * @param leaveGround takes off vertically, and returns the position reached; fails with [[NotReady]]
+    * @param leaveGround takes off vertically, and returns the position reached; fails with [[CannotFly]]
     */
   final case class Starting(startNed: Vector3, approach: Approach, leaveGround: () => Future[Vector3])
-
-  /** Carries an expected error out of a chain of calls. */
-  final case class NotReady(reason: String) extends RuntimeException(reason)
 
   /** Distance between two vehicles' layers, m: more than a vehicle's overshoot. */
   val LayerM = 5.0
 
-  /** Moves vehicles until all are at rest and look north; fails with [[NotReady]].
+  /** Moves vehicles until all are at rest and look north; fails with [[CannotFly]].
     *
     * @param team the whole team. Each vehicle has a layer of its own, also if other processes move the others
     * @param moves selects the vehicles to move, by index
@@ -31,13 +28,10 @@ private[flight] object StartPositioning:
       case (vehicle, index) if moves(index) => (vehicle, highest - (index + 1) * LayerM)
     for
       _ <- Future.traverse(layered)((one, down) =>
-        one.leaveGround().flatMap(above => go(one, above.copy(z = down), Approach.Passing))
+        one.leaveGround().flatMap(above => one.approach.to(above.copy(z = down), Approach.Passing))
       )
-      _ <- Future.traverse(layered)((one, down) => go(one, one.startNed.copy(z = down), Approach.Passing))
-      _ <- Future.traverse(layered)((one, _) => go(one, one.startNed, Approach.AtRest))
+      _ <- Future.traverse(layered)((one, down) =>
+        one.approach.to(one.startNed.copy(z = down), Approach.Passing)
+      )
+      _ <- Future.traverse(layered)((one, _) => one.approach.to(one.startNed, Approach.AtRest))
     yield ()
-
-  private def go(one: Starting, goalNed: Vector3, limits: Approach.Limits)(using
-      ExecutionContext
-  ): Future[Unit] =
-    one.approach.to(goalNed, limits).map(_.fold(reason => throw NotReady(reason), _ => ()))

@@ -55,9 +55,8 @@ object VirtualFlights:
       use: Either[NotFlown, FlightSummary] => Either[NotFlown, A]
   )(using Scenarios): Vector[Either[NotFlown, A]] =
     val used = inParallel(settings, plans): flight =>
-      flight.landed.outcome match
-        case FlightOutcome.Failed(reason) => use(Left(NotFlown(flight.landed.plan, reason)))
-        case _                            => use(Right(FlightSummary.of(flight.recorder.recording)))
+      val completed = flight.completed.left.map(NotFlown(flight.landed.plan, _))
+      use(completed.map(recorder => FlightSummary.of(recorder.recording)))
     used.map(_.flatten)
 
   /** Runs the flights in parallel. A failure is reported with that flight's seed, and the others still run.
@@ -72,13 +71,6 @@ object VirtualFlights:
       result.left.map(NotFlown(plan, _))
     InParallel.map(plans, Runtime.getRuntime.availableProcessors)(flown)
 
-  /** Simulates a flight on the calling thread, to its end.
-    *
-    * @return the result with the recording, or why the flight failed
-    */
-  def fly(settings: FlySettings, plan: FlightPlan): Either[String, VirtualFlightResult] =
-    fly(settings, plan, RunLimits())
-
   /** The error message for flights whose records cannot fit into a [[MemoryRecorder]]. */
   def tooLong(settings: FlySettings): Option[String] =
     val vehicles = settings.fleet.agents.size
@@ -91,14 +83,15 @@ object VirtualFlights:
   /** Records that a vehicle makes in a period; loops over links have made 6 and more. */
   private val LeastRecords = 4
 
-  /** Simulates a flight.
+  /** Simulates a flight on the calling thread, to its end.
     *
     * @param limits limits of a flight whose time advances
+    * @return the result with the recording, or why the flight failed
     */
-  private[flight] def fly(
+  def fly(
       settings: FlySettings,
       plan: FlightPlan,
-      limits: RunLimits
+      limits: RunLimits = RunLimits()
   ): Either[String, VirtualFlightResult] =
     VirtualTime
       .run(plan.seed, limitsOf(plan.loop, settings.duration, limits)): system =>
@@ -171,12 +164,10 @@ object VirtualFlights:
   /** The result of the last flight of these settings, simulated on the calling thread. */
   def result(settings: FlySettings): Either[String, Result] =
     for
-      flown <- fly(settings, settings.plans.last.copy(seed = settings.seed))
-      _     <- flown.landed.outcome match
-        case FlightOutcome.Failed(reason) => Left(reason)
-        case _                            => Right(())
-      tracks <- Tracks
-        .of(RecordedTracks.of(flown.recorder.recording))
+      flown    <- fly(settings, settings.plans.last.copy(seed = settings.seed))
+      recorder <- flown.completed
+      tracks   <- Tracks
+        .of(RecordedTracks.of(recorder.recording))
         .filter(_.vehicles.size == settings.fleet.agents.size)
         .toRight("its vehicles were not all seen")
     yield Result.of(settings.scenario, tracks)
@@ -193,7 +184,11 @@ object VirtualFlights:
   private val SolverAt = Address(There, 7400)
 
 /** A flight in virtual time with its whole recording. */
-final case class VirtualFlightResult(landed: FlightResult, recorder: MemoryRecorder)
+final case class VirtualFlightResult(landed: FlightResult, recorder: MemoryRecorder):
+  /** The recorder of the flight, or why it failed. */
+  def completed: Either[String, MemoryRecorder] = landed.outcome match
+    case FlightOutcome.Failed(reason) => Left(reason)
+    case _                            => Right(recorder)
 
 /** A flight in virtual time that failed or has no usable result. */
 final case class NotFlown(plan: FlightPlan, reason: String):

@@ -4,7 +4,6 @@ import org.apache.pekko.actor.ActorSystem
 import scala.annotation.tailrec
 import scala.concurrent.Future
 import skein.link.{BackgroundThread, ControlThreads, Transport}
-import skein.loop.FlightOutcome
 import skein.record.MemoryRecorder
 import skein.settings.{FlySettings, OutsidePolicy, SolverChoice, Wire}
 import skein.signal.LatencyProfile
@@ -55,12 +54,9 @@ object WarmUp:
       if flown == flights || clock.now() >= until then Right(flown)
       else
         val plan = plans(flown % plans.size)
-        VirtualFlights.fly(short, plan) match
-          case Left(reason)  => Left(s"${plan.id}, to warm up: $reason")
-          case Right(flight) =>
-            flight.landed.outcome match
-              case FlightOutcome.Failed(reason) => Left(s"${plan.id}, to warm up: $reason")
-              case _                            => next(flown + 1)
+        VirtualFlights.fly(short, plan).flatMap(_.completed) match
+          case Left(reason) => Left(s"${plan.id}, to warm up: $reason")
+          case Right(_)     => next(flown + 1)
 
     next(0)
 

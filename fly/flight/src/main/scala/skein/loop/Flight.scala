@@ -78,15 +78,23 @@ object Flight:
     import system.dispatcher
     val isPaused = loop == LoopKind.Paused
     require(!isPaused || time.isDefined, "paused needs a simulator whose time passes in steps")
-    val switch          = KillSwitches.shared("flight")
-    val stopping        = Promise[FlightOutcome]()
+    val switch   = KillSwitches.shared("flight")
+    val stopping = Promise[FlightOutcome]()
+
+    def graph(kind: LoopKind, team: Team): RunnableGraph[Future[Done]] = kind match
+      case LoopKind.Paused =>
+        val steps = duration.toNanos / team.settings.period.toNanos
+        PausedLoop(team, time.get, steps, clock, () => stopping.isCompleted)
+      case LoopKind.Sequential => SequentialLoop(team, switch)
+      case LoopKind.Futures    => FuturesLoop(team, switch)
+      case LoopKind.Stream     => StreamLoop(team, switch)
+      case LoopKind.Predictive => PredictiveLoop(team, switch)
+      case LoopKind.Plan       => PlanLoop(team, switch)
     def run(team: Team) = loop match
       case own: OwnLoop   => runOwn(own, team, switch, stopping.future)
       case kind: LoopKind =>
         val here = on.getOrElse(SystemMaterializer(system).materializer)
-        val run  =
-          graph(kind, team, time, duration, clock, switch, () => stopping.isCompleted).run()(using here)
-        (running = run, streams = Future.successful(here))
+        (running = graph(kind, team).run()(using here), streams = Future.successful(here))
     val runs =
       try (team +: others).map(team => (team, run(team)))
       catch
@@ -153,22 +161,3 @@ object Flight:
   private final class Streams(started: Promise[Materializer]) extends Actor:
     started.success(Materializer(context))
     def receive: Receive = Actor.emptyBehavior
-
-  private def graph(
-      kind: LoopKind,
-      team: Team,
-      time: Option[SteppedTime],
-      duration: Span,
-      clock: Clock,
-      switch: SharedKillSwitch,
-      stopped: () => Boolean
-  )(using system: ActorSystem): RunnableGraph[Future[Done]] =
-    import system.dispatcher
-    kind match
-      case LoopKind.Paused =>
-        PausedLoop(team, time.get, duration.toNanos / team.settings.period.toNanos, clock, stopped)
-      case LoopKind.Sequential => SequentialLoop(team, switch)
-      case LoopKind.Futures    => FuturesLoop(team, switch)
-      case LoopKind.Stream     => StreamLoop(team, switch)
-      case LoopKind.Predictive => PredictiveLoop(team, switch)
-      case LoopKind.Plan       => PlanLoop(team, switch)

@@ -43,6 +43,7 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
           now,
           parts(index).copy(situation = answer.best.situation(index, parts(index))),
           answer.best.plans(index),
+          answer.slices,
           isOld = answer.unsearchedS(index) > planner.horizonS / 2
         )
       .unzip

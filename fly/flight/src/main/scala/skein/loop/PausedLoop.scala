@@ -6,7 +6,6 @@ import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
 import scala.concurrent.duration.DurationInt
-import scala.util.{Failure, Success}
 import skein.port.{SteppedTime, VehicleError}
 import skein.record.EventKind
 import skein.signal.{Stamped, TimeAxis}
@@ -218,10 +217,7 @@ private final class PausedFlight(
       throw LoopFailed(why)
 
   private def orFail[A](call: Future[Either[VehicleError, A]]): Future[A] =
-    call.transform:
-      case Success(Right(value)) => Success(value)
-      case Success(Left(error))  => Failure(LoopFailed(error.message))
-      case Failure(error)        => Failure(error)
+    call.flatMap(_.fold(failed, Future.successful))
 
   private def standsStill(error: VehicleError) =
     s"the simulator could not be let run again and stands still: ${error.message}"

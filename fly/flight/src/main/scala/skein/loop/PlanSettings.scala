@@ -103,7 +103,7 @@ final case class PlanSettings(
 
   def text: String = PlanSettings.words
     .zip(productIterator)
-    .flatMap { case ((field, word), value) => word.text(value).map(text => s"${word.name(field)}=$text") }
+    .map { case ((name, word), value) => s"$name=${word.text(value)}" }
     .mkString(" ")
 
 object PlanSettings:
@@ -119,37 +119,26 @@ object PlanSettings:
   /** Margin of speed limits, as a share: vehicles overshoot commanded speeds. */
   val SpeedDoubt = 0.1
 
-  /** The text form of a setting, if it is one word. */
-  private final class Word[A](
-      suffix: String,
-      val text: A => Option[String],
-      parse: Option[String] => Option[A]
-  ):
-    def name(field: String): String                                 = field + suffix
-    def read(values: Map[String, String], field: String): Option[A] = parse(values.get(name(field)))
+  /** The text form of a setting: one word, after its name with this suffix. */
+  private final class Word[A](val suffix: String, val text: A => String, val parse: String => Option[A])
 
-  private def word[A](suffix: String, text: A => String, parse: String => Option[A]): Word[A] =
-    Word(suffix, value => Some(text(value)), _.flatMap(parse))
-
-  private given Word[Span]   = word("Ns", _.toNanos.toString, _.toLongOption.map(Span.ofNanos))
-  private given Word[Int]    = word("", _.toString, _.toIntOption)
-  private given Word[Double] = word("", _.toString, _.toDoubleOption)
-
-  // Set by the scenario.
-  private given Word[Vector[Kept]] = Word("", _ => None, _ => Some(Vector.empty))
+  private given Word[Span]   = Word("Ns", _.toNanos.toString, _.toLongOption.map(Span.ofNanos))
+  private given Word[Int]    = Word("", _.toString, _.toIntOption)
+  private given Word[Double] = Word("", _.toString, _.toDoubleOption)
 
   private val mirror = summon[Mirror.ProductOf[PlanSettings]]
 
+  /** All settings by name, except the last, which the scenario sets. */
   private val words: Vector[(String, Word[Any])] =
-    constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString).toVector.zip(
-      summonAll[Tuple.Map[mirror.MirroredElemTypes, Word]].toList.asInstanceOf[List[Word[Any]]]
-    )
+    constValueTuple[mirror.MirroredElemLabels].toList.toVector
+      .zip(summonAll[Tuple.Map[Tuple.Init[mirror.MirroredElemTypes], Word]].toList)
+      .map { case (field, word: Word[Any] @unchecked) => s"$field${word.suffix}" -> word }
 
   /** Reads settings back from their text; absent if it is not such a text. */
   def parse(text: String): Option[PlanSettings] =
     val values = text.split(' ').collect { case s"$name=$value" => name -> value }.toMap
-    val read   = words.flatMap((field, word) => word.read(values, field))
+    val read   = words.flatMap((name, word) => values.get(name).flatMap(word.parse))
     Option
-      .when(read.size == words.size)(mirror.fromProduct(Tuple.fromArray(read.toArray)))
+      .when(read.size == words.size)(mirror.fromProduct(Tuple.fromArray((read :+ Vector.empty).toArray)))
       // Plans were searched by path integrals, too.
       .filter(read => read.mistakes.isEmpty && values.get("method").forall(_ == "cross-entropy"))

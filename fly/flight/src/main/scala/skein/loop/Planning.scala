@@ -43,6 +43,7 @@ private abstract class Planning(
   /** The decision for the plan found.
     *
     * @param part the planning problem, whose situation includes the planned tracks of the other vehicles
+    * @param slices number of slices that each search has finished
     * @param isOld whether the vehicle's policy decides instead of the plan
     */
   final def decide(
@@ -51,6 +52,7 @@ private abstract class Planning(
       now: Instant,
       part: Part,
       plan: Plan,
+      slices: Vector[Int],
       isOld: Boolean
   ): (Memory, PlannedDecision) =
     val chosen = if isOld then None else Some(begun(part, plan))
@@ -60,7 +62,17 @@ private abstract class Planning(
     val heading          = Radians(memory.headingRad + action.turned)
     val speed            = if choosesSpeed then MetresPerSecond(action.speed) else agent.speed
     val (next, decision) = decider.decided(memory, view, now, Action.Along(heading, speed, down))
-    (next, PlannedDecision(decision, action, plan, isOld, chosen.map(course(part, _))))
+    val report           = PlanReport(
+      plan.candidates,
+      slices,
+      Option.when(plan.cost.isFinite)(plan.cost.toDouble),
+      isSearched = plan.slices > 0,
+      byPolicy = isOld,
+      action.breaches.size,
+      action.breaches.headOption.map(_.text),
+      chosen.map(course(part, _))
+    )
+    (next, PlannedDecision(decision, report))
 
   private def course(part: Part, manoeuvre: Manoeuvre): PlannedPath =
     val track = ManoeuvreRollout(part.situation, part.objective, planner.dtS).track(manoeuvre)
@@ -73,32 +85,8 @@ private abstract class Planning(
     val enough  = rollout.fly(plan.manoeuvre).cost + Planning.ClearGain
     part.situation.suggested.find(rollout.fly(_).cost < enough).getOrElse(plan.manoeuvre)
 
-/** A planned decision, with the plan's data.
-  *
-  * @param byPolicy whether the last plan was too old to continue
-  * @param course the planned path; absent if the policy decides instead
-  */
-final case class PlannedDecision(
-    decision: Decision,
-    action: PlannedMove,
-    plan: Plan,
-    byPolicy: Boolean,
-    course: Option[PlannedPath] = None
-):
-  /** The report of a planned decision.
-    *
-    * @param slices number of slices that each search has finished
-    */
-  def report(slices: Vector[Int]): PlanReport = PlanReport(
-    plan.candidates,
-    slices,
-    Option.when(plan.cost.isFinite)(plan.cost.toDouble),
-    isSearched = plan.slices > 0,
-    byPolicy,
-    action.breaches.size,
-    action.breaches.headOption.map(_.text),
-    course
-  )
+/** A decision with the plan behind it, as recordings have it. */
+final case class PlannedDecision(decision: Decision, plan: PlanReport)
 
 /** The recorded data of a planned decision.
   *

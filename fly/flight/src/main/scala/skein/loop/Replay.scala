@@ -45,16 +45,12 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
   private val measured = recording.measurements
     .map(read => (read.vehicle, read.sensor, read.sequence) -> read)
     .toMap
-  private val sensings = recording.sensings.groupBy(sensing => (sensing.vehicle, sensing.decision))
-  private val missed   = recording.events.collect {
-    case Event(_, EventKind.DeadlineMissed, Some(vehicle), _, Some(decision), _, _) => (vehicle, decision)
-  }.toSet
-  private val begunAnew = recording.events.collect {
-    case Event(_, EventKind.SolverRestarted, Some(vehicle), _, Some(decision), _, _) => (vehicle, decision)
-  }.toSet
-  private val fallback = recording.heading.parameters
-    .find(_.name == Replay.Fallback)
-    .flatMap(parameter => skein.loop.Fallback.parse(parameter.value).toOption)
+  private val sensings  = recording.sensings.groupBy(sensing => (sensing.vehicle, sensing.decision))
+  private val missed    = decisionsOf(EventKind.DeadlineMissed)
+  private val begunAnew = decisionsOf(EventKind.SolverRestarted)
+  private val fallback  = recording.heading
+    .parameter(Replay.Fallback)
+    .flatMap(skein.loop.Fallback.parse(_).toOption)
     .getOrElse(skein.loop.Fallback.Repeat)
   private val moves = sentMoves.map(move => (move.vehicle, move.sentAt.toNanos) -> move).toMap
 
@@ -71,6 +67,9 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
     )
   private val planners = joint.fold(Vector.empty)(_.vehicles).map(fleet.agents(_).name)
 
+  private def decisionsOf(kind: EventKind): Set[(String, Long)] =
+    recording.events.filter(_.kind == kind).flatMap(event => event.vehicle.zip(event.decision)).toSet
+
   /** Decisions made jointly, by their time and vehicle. */
   private val together =
     recording.decisions
@@ -82,13 +81,14 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
 
   /** The first decision whose repetition differs from the recording. */
   def firstDifference: Option[Difference] =
-    val states = fleet.agents.indices.toVector.map: self =>
+    val single = fleet.agents.indices.toVector.map: self =>
       val decider = Decider(fleet, self)
-      DecisionState(decider, decider.start)
-    val jointly =
-      joint.map(planning => JointDecisionState(planning, planning.vehicles.map(Decider(fleet, _).start)))
+      SingleState(self, decider, decider.start): DecisionState
+    val states = joint.fold(single): planning =>
+      val together = JointState(planning, planning.vehicles.map(Decider(fleet, _).start))
+      planning.vehicles.foldLeft(single)(_.updated(_, together))
     whole.iterator
-      .scanLeft((Minds(states, jointly, Map.empty), Option.empty[Difference])): (state, recorded) =>
+      .scanLeft((Minds(states, Map.empty), Option.empty[Difference])): (state, recorded) =>
         again(state._1, recorded) match
           case Left(difference)          => (state._1, Some(difference))
           case Right((states, decision)) =>
@@ -106,63 +106,37 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
       cut.contains(decision.decidedAt) && planners.contains(decision.vehicle)
     )
 
-  private def again(states: Minds, recorded: DecisionRow): Either[Difference, (Minds, DecisionRow)] =
-    (states.decided.get(recorded.vehicle, recorded.sequence), states.jointly) match
-      case (Some(decision), _)                                        => Right((states, decision))
-      case (None, Some(state)) if planners.contains(recorded.vehicle) =>
-        againTogether(states, state, recorded)
-      case _ => againAlone(states, recorded)
+  private def again(minds: Minds, recorded: DecisionRow): Either[Difference, (Minds, DecisionRow)] =
+    minds.decided.get(key(recorded)).fold(decidedAgain(minds, recorded))(decision => Right((minds, decision)))
 
-  private def againAlone(states: Minds, recorded: DecisionRow): Either[Difference, (Minds, DecisionRow)] =
+  private def decidedAgain(minds: Minds, recorded: DecisionRow): Either[Difference, (Minds, DecisionRow)] =
     for
       self <- vehicle(recorded, "vehicle", recorded.vehicle)
-      view <- view(recorded, self, states.single(self).regardsTeam)
+      state = minds.states(self)
+      all <- Expect.each(state.vehicles): other =>
+        if other == self then Right(recorded) else decidedWith(recorded, fleet.agents(other).name)
+      views <- Expect.each(state.vehicles.zip(all)): (vehicle, decision) =>
+        view(decision, vehicle, state.regardsTeam(vehicle))
+      isMissed = all.forall(decision => missed(key(decision)))
+      slices <-
+        if isMissed || !planners.contains(recorded.vehicle) then Right(Vector.empty) else searched(recorded)
     yield
-      val before = states.single(self)
-      val state  = if begunAnew((recorded.vehicle, recorded.sequence)) then before.begunAnew else before
-      val (next, decision) =
-        if missed((recorded.vehicle, recorded.sequence)) then
-          state.decideBy(instead(self), view, recorded.decidedAt)
-        else state.decide(view, recorded.decidedAt)
-      (states.copy(single = states.single.updated(self, next)), rows.decision(decision))
-
-  private def againTogether(
-      states: Minds,
-      state: JointDecisionState,
-      recorded: DecisionRow
-  ): Either[Difference, (Minds, DecisionRow)] =
-    val recordedToo = together(recorded.decidedAt)
-    for
-      all <- collected(planners): name =>
-        recordedToo.get(name).toRight(Difference(
-          where(recorded),
-          "vehicle",
-          name,
-          "expected to decide at that time too"
-        ))
-      views <- collected(all): decision =>
-        vehicle(decision, "vehicle", decision.vehicle).flatMap(self =>
-          view(decision, self, state.planning.regardsTeam(self))
-        )
-      isMissed = all.forall(decision => missed((decision.vehicle, decision.sequence)))
-      slices <- if isMissed then Right(Vector.empty) else searched(recorded)
-    yield
-      val isNew        = all.exists(decision => begunAnew((decision.vehicle, decision.sequence)))
-      val before       = if isNew then state.begunAnew else state
+      val before       = if all.exists(decision => begunAnew(key(decision))) then state.begunAnew else state
       val (next, made) =
-        if isMissed then before.decideBy(state.planning.vehicles.map(instead), views, recorded.decidedAt)
+        if isMissed then before.decideBy(state.vehicles.map(instead), views, recorded.decidedAt)
         else before.decide(views, recorded.decidedAt, slices)
       val decisions = made.map(rows.decision)
-      val decided   = decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
       // If its number is wrong, the comparison with the recorded decision finds that.
-      val own = decisions(planners.indexOf(recorded.vehicle))
-      (states.copy(jointly = Some(next), decided = decided), own)
+      val own     = decisions(state.vehicles.indexOf(self))
+      val decided =
+        if decisions.sizeIs == 1 then minds.decided
+        else decisions.map(decision => key(decision) -> decision).toMap
+      (Minds(state.vehicles.foldLeft(minds.states)(_.updated(_, next)), decided), own)
 
-  private def collected[A, B](all: Vector[A])(one: A => Either[Difference, B])
-      : Either[Difference, Vector[B]] =
-    all.map(one).partitionMap(identity) match
-      case (Vector(), found) => Right(found)
-      case (missing, _)      => Left(missing.head)
+  private def decidedWith(recorded: DecisionRow, name: String): Either[Difference, DecisionRow] =
+    together(recorded.decidedAt)
+      .get(name)
+      .toRight(Difference(where(recorded), "vehicle", name, "expected to decide at that time too"))
 
   private def view(recorded: DecisionRow, self: Int, regardsTeam: Boolean): Either[Difference, TeamView] =
     for
@@ -188,22 +162,23 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
         .getOrElse(possible.head)
 
   private def sensed(of: DecisionRow, self: Int): Either[Difference, Map[String, SensorReading]] =
-    collected(sensings.getOrElse((of.vehicle, of.sequence), Vector.empty)): sensing =>
-      measured
-        .get((of.vehicle, sensing.sensor, sensing.measurement))
-        .map: read =>
-          val values = Stamped(read.numbers, read.validAt, read.sentAt, read.receivedAt)
-          val timed  = if paused then PausedLoop.timeless(values) else values
-          sensing.sensor -> SensorReading(self, sensing.sensor, read.sequence, read.quantities, timed)
-        .toRight(
-          Difference(where(of), sensing.sensor, s"measurement ${sensing.measurement}", "no such measurement")
-        )
-    .map(_.toMap)
+    Expect
+      .each(sensings.getOrElse(key(of), Vector.empty)): sensing =>
+        measured
+          .get((of.vehicle, sensing.sensor, sensing.measurement))
+          .map: read =>
+            val values = Stamped(read.numbers, read.validAt, read.sentAt, read.receivedAt)
+            val timed  = if paused then PausedLoop.timeless(values) else values
+            sensing.sensor -> SensorReading(self, sensing.sensor, read.sequence, read.quantities, timed)
+          .toRight(
+            Difference(where(of), sensing.sensor, s"measurement ${sensing.measurement}", "no such one")
+          )
+      .map(_.toMap)
 
   /** The number of slices in each search of a decision. */
   private def searched(of: DecisionRow): Either[Difference, Vector[Int]] =
     planned
-      .get((of.vehicle, of.sequence))
+      .get(key(of))
       .map(_.slices.map(_.toInt))
       .toRight(Difference(where(of), "slices", "absent", "expected in the table of plans"))
 
@@ -214,21 +189,21 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
   /** The readings of the rest of the team, if the policy considers it: every vehicle has one. */
   private def othersSeen(of: DecisionRow, self: Int, opponent: Int): Either[Difference, Map[Int, Reading]] =
     val rest = fleet.agents.indices.filter(index => index != self && index != opponent)
-    rest.foldLeft[Either[Difference, Map[Int, Reading]]](Right(Map.empty)): (soFar, vehicle) =>
-      val name = fleet.agents(vehicle).name
-      for
-        readings <- soFar
-        sighting <- sightingOf(of, name).toRight(
-          Difference(where(of), "sighting", name, "missing in the table of sightings")
-        )
-        reading <- bySequence
-          .get((name, sighting.reading))
-          .map(message)
-          .toRight(Difference(where(of), "sighting", s"$name ${sighting.reading}", "no such reading"))
-      yield readings.updated(vehicle, reading)
+    Expect
+      .each(rest): vehicle =>
+        val name = fleet.agents(vehicle).name
+        for
+          sighting <- sightingOf(of, name).toRight(
+            Difference(where(of), "sighting", name, "missing in the table of sightings")
+          )
+          reading <- bySequence
+            .get((name, sighting.reading))
+            .toRight(Difference(where(of), "sighting", s"$name ${sighting.reading}", "no such reading"))
+        yield vehicle -> message(reading)
+      .map(_.toMap)
 
   private def sightingOf(of: DecisionRow, vehicle: String): Option[Sighting] =
-    sighted.getOrElse((of.vehicle, of.sequence), Vector.empty).find(_.vehicle == vehicle)
+    sighted.getOrElse(key(of), Vector.empty).find(_.vehicle == vehicle)
 
   /** The candidate views with readings of vehicles that the decision did not use. The view was drawn at some
     * moment after the used readings were received, so there is one for each reading received since.
@@ -245,7 +220,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
     yield view.copy(estimates = recorded.predicted.map(estimates(view, recorded, _)))
 
   private def estimates(view: TeamView, recorded: DecisionRow, predicted: Predicted) =
-    val states = planned.get((recorded.vehicle, recorded.sequence)).flatMap(_.states)
+    val states = planned.get(key(recorded)).flatMap(_.states)
     view.readings.flatten.map: reading =>
       val name               = rows.name(reading.vehicle)
       val read               = reading.state.value
@@ -292,19 +267,18 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
       vehicle: Int,
       since: Option[Span]
   ): Either[Difference, Option[SentCommand]] =
-    since match
-      case None       => Right(None)
-      case Some(span) =>
+    Expect
+      .each(since): span =>
         moves
           .get((vehicle, (of.decidedAt - span).toNanos))
-          .map(Some(_))
           .toRight(Difference(where(of), column, span.toMillis.toString, "no command was sent then"))
+      .map(_.headOption)
 
   /** The sent moves. While the simulator stands still, they are sent at the moment of their decision, on its
     * clock.
     */
   private def sentMoves: Vector[SentCommand] =
-    val decided = recording.decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
+    val decided = recording.decisions.map(decision => key(decision) -> decision).toMap
     for
       command  <- recording.commands
       sequence <- command.decision
@@ -318,20 +292,17 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
       rows.action(decision, fleet.agents(vehicle))
     )
 
+  private def key(decision: DecisionRow): (String, Long) = (decision.vehicle, decision.sequence)
+
   private def where(decision: DecisionRow): String = s"decision ${decision.sequence} of ${decision.vehicle}"
 
 object Replay:
   /** State of a replay.
     *
-    * @param single the deciders' states, by vehicle index
-    * @param jointly state of the vehicles that plan jointly
+    * @param states by vehicle; those that plan together share one
     * @param decided decisions of the last joint round, by vehicle and sequence number
     */
-  private final case class Minds(
-      single: Vector[DecisionState],
-      jointly: Option[JointDecisionState],
-      decided: Map[(String, Long), DecisionRow]
-  )
+  private final case class Minds(states: Vector[DecisionState], decided: Map[(String, Long), DecisionRow])
 
   /** The parameter that names the fallback for missed deadlines. */
   val Fallback: String = "fallback"

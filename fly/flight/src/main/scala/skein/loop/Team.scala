@@ -44,12 +44,11 @@ final class Team(
   private val deciders = vehicles.map(Decider(fleet, _))
   val log: TeamLog     = TeamLog(fleet, deciders, clock, recorder)
 
-  private val parts   = TeamParts(fleet)
-  private val sensing = TeamSensing(fleet, ports, own, clock, settings, clocks, messages, parts, log)
-  private val viewing =
-    TeamViewing(fleet, own, settings, clocks, messages.isDefined, hold, sensing, parts, log)
-  private val deciding = TeamDeciding(fleet, clock, settings, deciders, workers, solver, sensing, parts, log)
-  private val steering = TeamSteering(ports, own, clock, settings, hold, sensing, parts, log)
+  private val parts    = TeamParts(fleet, own, clock, settings, log)
+  private val sensing  = TeamSensing(ports, clocks, messages, parts)
+  private val viewing  = TeamViewing(clocks, messages.isDefined, hold, sensing, parts)
+  private val deciding = TeamDeciding(deciders, workers, solver, sensing, parts)
+  private val steering = TeamSteering(ports, hold, sensing, parts)
 
   export parts.{meters, named}
   export sensing.{isNewer, joinLatest, read, readAll, sense, senseAll, sensed, ticks}

@@ -7,7 +7,7 @@ import org.apache.pekko.stream.scaladsl.Flow
 import scala.concurrent.{ExecutionContext, Future}
 import skein.flow.*
 import skein.loop.planning.{PlanStage, PlanWorkers}
-import skein.policy.{Policy, Fleet}
+import skein.policy.Policy
 import skein.units.*
 
 /** Predicts a team's requests for the time at which their commands take effect, decides or plans on them, and
@@ -17,16 +17,14 @@ import skein.units.*
   * @param solver decides instead of the policies
   */
 private final class TeamDeciding(
-    fleet: Fleet,
-    clock: Clock,
-    settings: LoopSettings,
     deciders: IndexedSeq[Decider],
     workers: PlanWorkers,
     solver: Option[Solver],
     sensing: TeamSensing,
-    parts: TeamParts,
-    log: TeamLog
+    parts: TeamParts
 )(using ExecutionContext):
+  import parts.{clock, fleet, log, settings}
+
   /** A view for a decision, with the time of the request. */
   private type Seen = (TeamView, Instant)
 
@@ -103,12 +101,10 @@ private final class TeamDeciding(
   ): Flow[DecisionRequest, Decision, NotUsed] =
     requests(vehicle)
       .via(askElsewhere(Vector(vehicle), deadline, solver, Span.Zero))
-      .map: (made, solved) =>
-        solved.foreach(log.solved(made.head, _))
-        made.head
+      .map((made, _) => made.head)
       .via(decided(vehicle))
 
-  /** Requests joint decisions from a solver. Missed deadlines are recorded.
+  /** Requests joint decisions from a solver. Answers and missed deadlines are recorded.
     *
     * @return the decisions with the answer; without an answer, the fallback's decisions
     */
@@ -118,7 +114,7 @@ private final class TeamDeciding(
     val instead = Expect.each(vehicles)(vehicle =>
       deadline.otherwise.policy(fleet.agents(vehicle)).toRight(())
     ).toOption
-    inTime(vehicles, deadline.within, instead, asksAgain = true): (memories, view, now) =>
+    val answered = inTime(vehicles, deadline.within, instead, asksAgain = true): (memories, view, now) =>
       val remembered = memories.head.held match
         case used: Solver.Remembered => Some(used)
         case _                       => None
@@ -133,6 +129,7 @@ private final class TeamDeciding(
             (next.copy(held = used), decision)
           ).unzip
           (next, made, solved)
+    answered.via(Tap((made, solved) => for by <- solved; decision <- made do log.solved(decision, by)))
 
   private def decideAtOnce(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
     requests(vehicle)
@@ -257,17 +254,13 @@ private final class TeamDeciding(
       (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
       (memories, seen: Seen, parts, answer) =>
         val (next, made) = planning.decide(memories, vehicles.map(_ => seen._1), seen._2, parts, answer)
-        (next, made.map(one => (decision = one.decision, plan = Some(one.report(answer.slices)))))
+        (next, made.map(one => (decision = one.decision, plan = Some(one.plan))))
     )
 
   private def planElsewhere(planning: JointPlanning, deadline: Deadline, solver: Solver)(using
       ActorSystem
   ): Flow[Seen, Vector[Planned], NotUsed] =
     askElsewhere(planning.vehicles, deadline, solver, settings.planning.deadline).map: (made, solved) =>
-      for
-        by       <- solved
-        decision <- made
-      do log.solved(decision, by)
       made.zipWithIndex.map((decision, place) =>
         (decision = decision, plan = solved.flatMap(_.chosen(place).plan))
       )

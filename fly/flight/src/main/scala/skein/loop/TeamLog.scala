@@ -24,8 +24,13 @@ import skein.units.*
 final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, recorder: Recorder):
   private val rows = Rows(fleet)
 
-  def note(kind: EventKind, vehicle: Option[Int], detail: String): Unit =
-    recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail))
+  def note(
+      kind: EventKind,
+      vehicle: Option[Int],
+      detail: String,
+      decision: Option[Long] = None,
+      about: Option[EventSubject] = None
+  ): Unit = recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail, decision, about))
 
   /** A policy missed its deadline.
     *
@@ -33,25 +38,18 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     */
   def missed(vehicle: Int, miss: Overrun, instead: Option[Long]): Unit =
     val done = instead.fold("nothing decided")(sequence => s"decision $sequence by the fallback")
-    recorder.offer(
-      Event(clock.now(), EventKind.DeadlineMissed, Some(name(vehicle)), s"$done: $miss", instead)
-    )
+    note(EventKind.DeadlineMissed, Some(vehicle), s"$done: $miss", instead)
 
   /** A solver's decision was received in time. */
   def solved(decision: Decision, by: Solved): Unit =
-    val vehicle = name(decision.vehicle)
+    import decision.{sequence, vehicle}
     if by.begunAnew then
-      recorder.offer(Event(
-        clock.now(),
-        EventKind.SolverRestarted,
-        Some(vehicle),
-        s"decision ${decision.sequence} by a policy that remembers nothing",
-        Some(decision.sequence)
-      ))
+      val what = s"decision $sequence by a policy that remembers nothing"
+      note(EventKind.SolverRestarted, Some(vehicle), what, Some(sequence))
     recorder.offer(
       SolvedRow(
-        vehicle,
-        decision.sequence,
+        name(vehicle),
+        sequence,
         by.question,
         by.askedAt,
         by.receivedAt,
@@ -64,8 +62,8 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     *
     * @param what the call
     */
-  def failed(vehicle: Int, what: String, error: VehicleError): Unit =
-    failed(vehicle, what, error, None)
+  def failed(vehicle: Int, what: String, error: VehicleError, about: Option[EventSubject] = None): Unit =
+    note(TeamLog.kindOf(error), Some(vehicle), s"$what: ${error.message}", about = about)
 
   /** A request for a vehicle's position was not answered.
     *
@@ -73,10 +71,6 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     */
   def unread(vehicle: Int, sequence: Long, error: VehicleError): Unit =
     failed(vehicle, s"reading $sequence", error, Some(EventSubject.Reading))
-
-  private def failed(vehicle: Int, what: String, error: VehicleError, about: Option[EventSubject]): Unit =
-    val kind = TeamLog.kindOf(error)
-    recorder.offer(Event(clock.now(), kind, Some(name(vehicle)), s"$what: ${error.message}", about = about))
 
   def read(reading: Reading): Unit = recorder.offer(rows.reading(reading))
 

@@ -2,9 +2,16 @@ package skein.loop
 
 import org.apache.pekko.stream.Attributes
 import skein.policy.Fleet
+import skein.units.Clock
 
-/** The parts of a team's graph: their names and meters. */
-private final class TeamParts(fleet: Fleet):
+/** What the parts of a team's graph share: above all, their names and meters. */
+private final class TeamParts(
+    val fleet: Fleet,
+    val own: Vector[Int],
+    val clock: Clock,
+    val settings: LoopSettings,
+    val log: TeamLog
+):
 
   val meters: StageMeters = StageMeters()
 

@@ -5,7 +5,6 @@ import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import skein.flow.{JoinLatest, Metronome, Sense}
-import skein.policy.Fleet
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.EventKind
 import skein.signal.{ClockAlignment, Stamped}
@@ -13,16 +12,13 @@ import skein.units.*
 
 /** Reads a team's vehicles and their sensors, and records the answers. */
 private final class TeamSensing(
-    fleet: Fleet,
     ports: Vector[VehiclePort],
-    own: Vector[Int],
-    clock: Clock,
-    settings: LoopSettings,
     clocksBefore: Option[ClockAlignment],
     messages: Option[Messages],
-    parts: TeamParts,
-    log: TeamLog
+    parts: TeamParts
 )(using ExecutionContext):
+  import parts.{clock, fleet, log, own, settings}
+
   private val meters = ports.indices.map(parts.meter("sense", _))
 
   // `futures` reads one vehicle from several threads concurrently.
@@ -57,14 +53,11 @@ private final class TeamSensing(
       for anew <- before.flatMap(_.contradiction(state)) do
         log.note(EventKind.ClockRestarted, Some(reading.vehicle), s"reading $sequence: $anew")
 
-  /** Reads a vehicle; records the answer or the error, and contradictions between the clocks. Thread-safe. */
-  def read(vehicle: Int): Future[Either[VehicleError, Reading]] = read(vehicle, isRunning = true)
-
-  /** Reads a vehicle.
+  /** Reads a vehicle; records the answer or the error, and contradictions between the clocks. Thread-safe.
     *
     * @param isRunning whether the simulator's clock runs by itself
     */
-  private def read(vehicle: Int, isRunning: Boolean): Future[Either[VehicleError, Reading]] =
+  def read(vehicle: Int, isRunning: Boolean = true): Future[Either[VehicleError, Reading]] =
     inboxes.get(vehicle).fold(ask(vehicle, isRunning))(_.read().map(Right(_)))
 
   private def ask(vehicle: Int, isRunning: Boolean): Future[Either[VehicleError, Reading]] =
@@ -166,11 +159,7 @@ private final class TeamSensing(
 
   /** Reads every sensor that a policy uses, in sequence; ends at the first error. */
   def senseAll(): Future[Either[VehicleError, Vector[SensorReading]]] =
-    sensors.foldLeft(Future.successful[Either[VehicleError, Vector[SensorReading]]](Right(Vector.empty))):
-      (soFar, sensor) =>
-        soFar.flatMap:
-          case Right(readings) => sensor.read().map(_.map(readings :+ _))
-          case error           => Future.successful(error)
+    inTurn(sensors)(_.read())
 
   /** Reads all vehicles in the scenario's order; ends at the first error. The states of vehicles that are
     * known by messages are those of the newest message after this controller's own vehicle was read.
@@ -178,12 +167,17 @@ private final class TeamSensing(
     * @param isRunning whether the simulator's clock runs by itself
     */
   def readAll(isRunning: Boolean = true): Future[Either[VehicleError, Vector[Reading]]] =
-    val inTurn = if messages.isEmpty then ports.indices else own ++ inboxes.keys.toVector.sorted
-    inTurn.foldLeft(Future.successful[Either[VehicleError, Vector[Reading]]](Right(Vector.empty))):
-      (soFar, vehicle) =>
-        soFar.flatMap:
-          case Right(readings) => read(vehicle, isRunning).map(_.map(readings :+ _))
-          case error           => Future.successful(error)
+    val all = if messages.isEmpty then ports.indices else own ++ inboxes.keys.toVector.sorted
+    inTurn(all)(read(_, isRunning))
+
+  /** Asks one after the other, until one fails. */
+  private def inTurn[A, B](all: Seq[A])(
+      ask: A => Future[Either[VehicleError, B]]
+  ): Future[Either[VehicleError, Vector[B]]] =
+    all.foldLeft(Future.successful[Either[VehicleError, Vector[B]]](Right(Vector.empty))): (soFar, next) =>
+      soFar.flatMap:
+        case Right(answers) => ask(next).map(_.map(answers :+ _))
+        case error          => Future.successful(error)
 
   /** Emits the number of ticks due since the last element, once per period from a given instant. */
   def ticks(first: Instant): Source[Int, NotUsed] =

@@ -16,14 +16,12 @@ import skein.units.*
 /** Commands a team's vehicles, records the results, and feeds them back into the loop. */
 private final class TeamSteering(
     ports: Vector[VehiclePort],
-    own: Vector[Int],
-    clock: Clock,
-    settings: LoopSettings,
     hold: Hold,
     sensing: TeamSensing,
-    parts: TeamParts,
-    log: TeamLog
+    parts: TeamParts
 )(using ExecutionContext):
+  import parts.{clock, log, own, settings}
+
   // The newest moves of each vehicle, oldest first: as many as may be unanswered.
   private val moves = AtomicReferenceArray(Array.fill(ports.size)(Vector.empty[Future[Any]]))
 

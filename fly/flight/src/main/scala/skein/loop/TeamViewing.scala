@@ -5,7 +5,6 @@ import org.apache.pekko.stream.{Graph, UniformFanOutShape}
 import org.apache.pekko.stream.scaladsl.{Broadcast, Flow, MergePreferred, Source}
 import skein.flow.Hold
 import skein.forecast.{Commanded, ForecastEvent, Forecast}
-import skein.policy.Fleet
 import skein.port.CommandPlan
 import skein.record.EventKind
 import skein.signal.ClockAlignment
@@ -16,16 +15,14 @@ import skein.units.*
   * @param byMessages whether all vehicles but the controller's own are known by messages
   */
 private final class TeamViewing(
-    fleet: Fleet,
-    own: Vector[Int],
-    settings: LoopSettings,
     clocks: Option[ClockAlignment],
     byMessages: Boolean,
     hold: Hold,
     sensing: TeamSensing,
-    parts: TeamParts,
-    log: TeamLog
+    parts: TeamParts
 ):
+  import parts.{fleet, log, own, settings}
+
   private val vehicles = fleet.agents.indices
 
   /** Merges events of several sources, with priority for fed-back commands, whose end also ends the loop. */

@@ -100,9 +100,6 @@ final case class FlySettings(
 
   def fleet: Fleet = scenario.fleet
 
-  private def multirotors: Vector[Agent] = fleet.agents.filter(_.kind == VehicleKind.Multirotor)
-  private def cars: Vector[Agent]        = fleet.agents.filter(_.kind == VehicleKind.Car)
-
   def loopSettings(plan: FlightPlan): LoopSettings =
     val all =
       loopSettings.copy(seed = plan.seed, planInPacket = planInPacket && plan.loop == LoopKind.Predictive)
@@ -242,8 +239,6 @@ object FlySettings:
       val before = names.take(index).count(_ == name)
       if before == 0 then name else s"$name-${before + 1}"
 
-  private val Apart = "paused, sequential, futures, stream, predictive"
-
   /** Reads `skein.fly`.
     *
     * @return Left lists every mistake, with its file, line, and what was expected
@@ -259,278 +254,45 @@ object FlySettings:
         given ConfigReader[Scenario]    = ConfigReader.fromFunction(_ => Right(scenario))
         given ConfigReader[FlySettings] = ConfigKeys.reader
         ConfigSource.fromConfig(timed).at("skein.fly").load[FlySettings].left.map(ConfigMistakes.of(_, timed))
-      valid <- validated(settings, timed)
-    yield valid
+      mistakes = FlightMistakes(settings, timed).all
+      _ <- Expect.that(mistakes.isEmpty)(mistakes.mkString("\n"))
+    yield settings
 
   private val Duration = "skein.fly.duration"
-
-  private def validated(settings: FlySettings, config: Config): Either[String, FlySettings] =
-    val mistakes = Seq(
-      Option.when(settings.loops.isEmpty)("loops: expected at least one loop, got none"),
-      Option.when(settings.links.isEmpty && settings.loops.exists(_ != LoopKind.Paused))(
-        "links: expected at least one link for any loop but paused, got none"
-      ),
-      Option.when(settings.duration < settings.period * 2)(shortMistake(settings, config)),
-      Option.when(
-        settings.period < Span.ofMillis(1)
-      )(s"period: expected 1 ms or more, got ${settings.period.toMillis} ms"),
-      Option.when(settings.fleet.agents.isEmpty)(
-        s"${settings.scenario.name}.agents: expected one or more, got none"
-      ),
-      Option.when(settings.scene.isEmpty && NamedScene.shipped(settings.scenario.scene).isEmpty)(
-        s"${settings.scenario.name}.scene: expected ${SceneFile.Names.mkString(", ")}, " +
-          s"got '${settings.scenario.scene}'"
-      ),
-      settings.multirotors.find(agent => !isRightAltitude(-agent.startPositionNed.z)).map(agent =>
-        s"${settings.scenario.name}: expected starts above 0 and up to " +
-          s"$MostAltitudeM m, got ${agent.name} at ${-agent.startPositionNed.z} m"
-      ),
-      Option.when(settings.wire == Wire.Mavlink && settings.loops.contains(LoopKind.Paused))(
-        "wire: expected loops other than paused over MAVLink, since " +
-          "its vehicles' time does not pass in steps"
-      ),
-      settings.cars
-        .find(_.startPositionNed.z != 0)
-        .map(car =>
-          s"${settings.scenario.name}: expected cars on the ground, at 0 " +
-            s"m, got ${car.name} at ${-car.startPositionNed.z} m"
-        ),
-      settings.cars.find(_ => settings.wire == Wire.Mavlink).map(car =>
-        s"wire: expected multirotors alone over MAVLink, got the car ${car.name}"
-      ),
-      Option.when(settings.wire == Wire.Mavlink && settings.images.nonEmpty)(
-        "images: expected none with wire mavlink, which carries no images"
-      ),
-      Option.when(settings.onlyPolicies && settings.policies.isEmpty)(
-        "only-policies: expected policies beside it, got none"
-      ),
-      Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
-      packetMistake(settings).map("plan-in-packet: " + _),
-      knowsMistake(settings).map("knows: " + _),
-      strangersMistake(settings).map("strangers: " + _),
-      apartMistake(settings, isGiven = optionAt("knows", config).isDefined).map("decentralised: " + _),
-      onlyMistake(settings).map("only: " + _),
-      betweenMistake(settings).map("between: " + _),
-      Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
-        "solver: expected with a loop whose decisions can be made elsewhere, got with paused alone"
-      ),
-      Option.when(settings.solver.isDefined && settings.policies.exists(OutsidePolicy.decides))(
-        "solver: expected with policies that both processes have, got with one behind a socket"
-      ),
-      Option.when(settings.deadline.exists(_ <= Span.Zero))(
-        s"deadline: expected more than 0, got ${settings.deadline.fold(0.0)(_.toMillis)} ms"
-      ),
-      lateMistake(settings),
-      idleMistake(settings, config),
-      settings.policies.find(file => !isFlownIn(settings.fleet, file)).map(file =>
-        s"policies: expected with a scenario of a ${PolicyFile.name(file.role)} and " +
-          s"vehicles of another role, got with '${settings.scenario.name}'"
-      )
-    ).flatten ++ settings.planning.mistakes.map(mistake => ConfigKeys.ofMistake(s"planning.$mistake"))
-    val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
-    Either.cond(all.isEmpty, settings, all.map(placed(_, config)).mkString("\n"))
-
-  /** The mistake of a flight that is too short for its period, at the value that an option gave: the other
-    * value may be the scenario's.
-    */
-  private def shortMistake(settings: FlySettings, config: Config): String =
-    if optionAt("period", config).isDefined && optionAt("duration", config).isEmpty then
-      s"period: expected half the duration (${(settings.duration / 2).toMillis} ms) or less, " +
-        s"got ${settings.period.toMillis} ms"
-    else
-      s"duration: expected two periods (${(settings.period * 2).toMillis} ms) or more, " +
-        s"got ${settings.duration.toMillis} ms"
-
-  /** Replaces the key at the beginning of a mistake by the source of its value. */
-  private def placed(mistake: String, config: Config): String =
-    val (key, said) = mistake.span(_ != ':')
-    ConfigMistakes.oneLine(ConfigMistakes.at(s"skein.fly.$key", config) + said)
-
-  /** The option from which a key of `skein.fly` has its value, if any. */
-  private def optionAt(key: String, config: Config): Option[String] =
-    val path = s"skein.fly.$key"
-    Option.when(config.hasPath(path))(config.getValue(path).origin).flatMap(ConfigKeys.optionOf)
 
   /** Whether a solver can decide for a loop: `paused` waits with its simulator stopped. */
   def decidedElsewhere(loop: AnyLoop): Boolean = loop != LoopKind.Paused
 
-  /** The mistake of a deadline that leaves no time for the answer after the search. */
-  private def lateMistake(settings: FlySettings): Option[String] =
-    val searched = settings.planning.deadline
-    val within   = settings.deadline.getOrElse(settings.period)
-    Option.when(
-      settings.solver.isDefined && settings.loops.contains(LoopKind.Plan) && within <= searched
-    ):
-      val which = if settings.deadline.isDefined then "deadline" else "period"
-      s"$which: expected more than planning.deadline, for which a solver searches " +
-        s"its plans, ${searched.toMillis} ms; got ${within.toMillis} ms"
-
-  /** The mistake of an option that no loop of the flights regards. */
-  private def idleMistake(settings: FlySettings, config: Config): Option[String] =
-    def isGiven(key: String) = optionAt(key, config).isDefined
-    def only(idle: AnyLoop*) = settings.loops.nonEmpty && settings.loops.forall(idle.contains)
-    val loops                = settings.loops.map(_.label).mkString(", ")
-    val predicts             = settings.loops.exists(loop =>
-      Seq(LoopKind.Predictive, LoopKind.Plan).contains(loop) || loop.isInstanceOf[OwnLoop]
-    )
-    if settings.deadline.isDefined && settings.solver.isEmpty && only(LoopKind.Paused, LoopKind.Plan) then
-      Some(s"deadline: expected with a loop in which policies decide by the clock, got with $loops alone")
-    else if isGiven("fallback") && settings.deadline.isEmpty && settings.solver.isEmpty then
-      Some("fallback: expected with deadline or solver, got it alone")
-    else if isGiven("predictor") && !predicts then
-      Some(s"predictor: expected with a loop that predicts, such as predictive, got with $loops")
-    else if settings.images.nonEmpty && only(LoopKind.Paused) then
-      Some("images: expected with a loop other than paused, which records none")
-    else None
-
-  private def packetMistake(settings: FlySettings): Option[String] =
-    if !settings.planInPacket then None
-    else if !settings.loops.contains(LoopKind.Predictive) then
-      Some("expected with the loop predictive, which foresees its commands, got without it")
-    else if settings.wire == Wire.Mavlink then
-      Some("expected vehicles over AirSim's protocol, got mavlink")
-    else if settings.deadline.isDefined || settings.solver.isDefined then
-      Some("expected without deadline and solver, since the policy is asked for later moments too")
-    else if settings.policies.exists(OutsidePolicy.decides) then
-      Some(
-        "expected policies of this process, which are asked for later moments too, got one behind a socket"
-      )
-    else
-      settings.cars.headOption.map(car => s"expected multirotors, which hold plans, got the car ${car.name}")
-
-  private def knowsMistake(settings: FlySettings): Option[String] =
-    val all = settings.knows == Knowledge.All
-    if !all && settings.loops.contains(LoopKind.Plan) then
-      Some("expected all with the loop plan, which plans against the policies of others, got positions")
-    else if !all && settings.solver.isDefined then
-      Some("expected all with a solver, which is told every command, got positions")
-    else None
-
-  private def strangersMistake(settings: FlySettings): Option[String] =
-    import settings.strangers
-    def predicts(loop: AnyLoop) = loop == LoopKind.Predictive || loop.isInstanceOf[OwnLoop]
-    if strangers == Strangers.Turn then None
-    else if settings.loopSettings.knows == Knowledge.All then
-      Some(
-        "expected knows positions with it, or decentralised, since otherwise all commands are known, " +
-          s"got ${strangers.label} without"
-      )
-    else if !settings.loops.exists(predicts) then
-      Some(s"expected a loop that predicts, such as predictive, got ${strangers.label} without")
-    else
-      Option.when(
-        strangers == Strangers.Belief && settings.predictor == PredictionModel.ConstantVelocity
-      )(
-        "expected turn or straight with the predictor constant-velocity, which predicts all straight on, got belief"
-      )
-
-  private def apartMistake(settings: FlySettings, isGiven: Boolean): Option[String] =
-    val other =
-      settings.loops.collectFirst { case loop if loop == LoopKind.Plan || loop.isInstanceOf[OwnLoop] => loop }
-    if !settings.decentralised then None
-    else
-      other
-        .map(loop =>
-          s"expected loops that decide for each vehicle by itself (${Apart}), got ${loop.label}"
-        )
-        .orElse(Option.when(
-          settings.loops.forall(_ == LoopKind.Paused)
-        )("expected a loop other than paused, which has a single controller"))
-        .orElse(Option.when(
-          settings.wire == Wire.Mavlink
-        )("expected vehicles over AirSim's protocol, got mavlink"))
-        .orElse(Option.when(settings.solver.isDefined)("expected no solver, which decides for all"))
-        .orElse(Option.when(isGiven && settings.knows == Knowledge.All)(
-          "expected knows positions, since no message carries the commands of others, got all"
-        ))
-        .orElse(Option.when(settings.fleet.agents.sizeIs > MostControllers)(
-          s"expected at most ${MostControllers} vehicles, got ${settings.fleet.agents.size}"
-        ))
-
-  private def onlyMistake(settings: FlySettings): Option[String] =
-    settings.only.flatMap: name =>
-      if !settings.decentralised then Some(s"expected decentralised with it, got '$name' without")
-      else if settings.own.isEmpty then
-        Some(s"expected one of ${settings.fleet.agents.map(_.name).mkString(", ")}, got '$name'")
-      else
-        Option.when(settings.loops.contains(LoopKind.Paused)):
-          "expected loops other than paused, which stops the time of all vehicles"
-
-  private def betweenMistake(settings: FlySettings): Option[String] =
-    settings.between.flatMap: link =>
-      if !settings.decentralised then Some(s"expected decentralised with it, got '${link.text}' without")
-      else
-        settings.only.map: name =>
-          s"expected all controllers in this process, which carries their messages, got only $name"
-
-  private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
-
-  /** Whether a policy can replace one in this fleet: its opponent is the nearest of another role. */
-  private def isFlownIn(fleet: Fleet, file: PolicyFile) =
-    fleet.agents.map(_.role).distinct.sizeIs > 1 && fleet.agents.exists(_.role == file.role)
-
-  private def predictorMistake(settings: FlySettings): Option[String] =
-    settings.multirotors
-      .flatMap(agent => PredictionModel.mistake(settings.predictor, -agent.startPositionNed.z))
-      .headOption
-      .map("predictor: " + _)
-
-  private def planMistake(settings: FlySettings): Option[String] =
-    val fleets = settings.plans.filter(_.loop == LoopKind.Plan).map(plan => plan -> plan.fleet(settings))
-    fleets
-      .flatMap((_, fleet) => Planning.told(fleet).left.toOption)
-      .headOption
-      .map("loops: " + _)
-      .orElse:
-        fleets
-          .flatMap((plan, fleet) => JointPlanning.of(fleet, settings.loopSettings(plan)).left.toOption)
-          .headOption
-          .map("predictor: " + _)
-
-  private given ConfigReader[Int] =
-    parsed(
-      "whole number",
-      text => exactly(text)(_.intValueExact).toRight(s"expected a whole number, got '$text'")
-    )
-
-  private given ConfigReader[Long] =
-    parsed(
-      "whole number",
-      text => exactly(text)(_.longValueExact).toRight(s"expected a whole number, got '$text'")
-    )
-
-  private given ConfigReader[Double] = parsed(
-    "number",
-    text => text.toDoubleOption.filter(_.isFinite).toRight(s"expected a finite number, got '$text'")
-  )
+  private given ConfigReader[Int]    = whole(_.intValueExact)
+  private given ConfigReader[Long]   = whole(_.longValueExact)
+  private given ConfigReader[Double] = parsed: text =>
+    text.toDoubleOption.filter(_.isFinite).toRight(s"expected a finite number, got '$text'")
 
   /** Reads a number exactly, so that `1e3` is a whole number too. */
-  private def exactly[A](text: String)(number: java.math.BigDecimal => A): Option[A] =
-    Try(number(java.math.BigDecimal(text))).toOption
+  private def whole[A](number: java.math.BigDecimal => A): ConfigReader[A] = parsed: text =>
+    Try(number(java.math.BigDecimal(text))).toOption.toRight(s"expected a whole number, got '$text'")
 
-  private given ConfigReader[Span] = parsed("duration", Span.parse)
+  private given ConfigReader[Span] = parsed(Span.parse)
 
-  private given (using Scenarios): ConfigReader[PredictionModel] = parsed("predictor", PredictionModel.parse)
+  private given (using Scenarios): ConfigReader[PredictionModel] = parsed(PredictionModel.parse)
 
-  private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
-  private given ConfigReader[Wire]       = parsed("wire", Wire.parse)
-  private given ConfigReader[Knowledge]  = parsed("knowledge", Knowledge.parse)
-  private given ConfigReader[Strangers]  = parsed("strangers", Strangers.parse)
+  private given ConfigReader[NamedScene] = parsed(NamedScene.read)
+  private given ConfigReader[Wire]       = parsed(Wire.parse)
+  private given ConfigReader[Knowledge]  = parsed(Knowledge.parse)
+  private given ConfigReader[Strangers]  = parsed(Strangers.parse)
 
-  private given ConfigReader[SimulatedBody] = parsed("plant", SimulatedBody.parse)
-  private given ConfigReader[SensorNoise]   = parsed("sensors", SensorNoise.parse)
+  private given ConfigReader[SimulatedBody] = parsed(SimulatedBody.parse)
+  private given ConfigReader[SensorNoise]   = parsed(SensorNoise.parse)
 
-  private given ConfigReader[VehicleLink] = parsed("link between vehicles", VehicleLink.parse)
+  private given ConfigReader[VehicleLink] = parsed(VehicleLink.parse)
 
-  private given ConfigReader[SolverChoice] = parsed("solver", SolverChoice.parse(_))
-  private given ConfigReader[ImageSource]  = parsed("images", ImageSource.parse)
+  private given ConfigReader[SolverChoice] = parsed(SolverChoice.parse(_))
+  private given ConfigReader[ImageSource]  = parsed(ImageSource.parse)
 
-  private given (using Scenarios): ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
+  private given (using Scenarios): ConfigReader[Fallback] = parsed(Fallback.parse)
 
-  private given (using Scenarios): ConfigReader[PolicyFile] = parsed(
-    "policy",
-    text => if text.startsWith("unix:") then OutsidePolicy.reach(text) else PolicyFile.read(text)
-  )
+  private given (using Scenarios): ConfigReader[PolicyFile] = parsed: text =>
+    if text.startsWith("unix:") then OutsidePolicy.reach(text) else PolicyFile.read(text)
 
   private given ConfigReader[PlanSettings] =
     val standard = PlanSettings()
@@ -542,10 +304,238 @@ object FlySettings:
   private def unread[A](value: A): ConfigReader[A] = new ConfigReader[A] with ReadsMissingKeys:
     def from(cursor: ConfigCursor): ConfigReader.Result[A] = Right(value)
 
-  private given (using Scenarios): ConfigReader[AnyLoop] = parsed("loop", AnyLoop.parse)
+  private given (using Scenarios): ConfigReader[AnyLoop] = parsed(AnyLoop.parse)
 
-  private given ConfigReader[LatencyProfile] =
-    parsed("latency profile", text => LatencyProfile.parse(text, TextFile.read).left.map(_.message))
+  private given ConfigReader[LatencyProfile] = parsed(LinkText.profile)
 
-  private def parsed[A](what: String, parse: String => Either[String, A]): ConfigReader[A] =
-    ConfigReader[String].emap(text => parse(text).left.map(CannotConvert(text, what, _)))
+  private def parsed[A](parse: String => Either[String, A]): ConfigReader[A] =
+    ConfigReader[String].emap(text => parse(text).left.map(CannotConvert(text, "setting", _)))
+
+/** What is wrong with settings of flights that were read from a configuration. */
+private final class FlightMistakes(settings: FlySettings, config: Config):
+  import FlightMistakes.*
+  import settings.*
+
+  private val (multirotors, cars) = fleet.agents.partition(_.kind == VehicleKind.Multirotor)
+  private val isMavlink           = wire == Wire.Mavlink
+  private val hasPaused           = loops.contains(LoopKind.Paused)
+
+  /** Every mistake, with the place of its value. */
+  def all: Seq[String] =
+    val mistakes = Seq(
+      first("loops", loops.isEmpty -> "expected at least one loop, got none"),
+      first(
+        "links",
+        (links.isEmpty && loops.exists(_ != LoopKind.Paused)) ->
+          "expected at least one link for any loop but paused, got none"
+      ),
+      tooShort,
+      first("period", (period < Span.ofMillis(1)) -> s"expected 1 ms or more, got ${period.toMillis} ms"),
+      first(s"${scenario.name}.agents", fleet.agents.isEmpty -> "expected one or more, got none"),
+      first(
+        s"${scenario.name}.scene",
+        (scene.isEmpty && NamedScene.shipped(scenario.scene).isEmpty) ->
+          s"expected ${SceneFile.Names.mkString(", ")}, got '${scenario.scene}'"
+      ),
+      multirotors.find(one => !isRightAltitude(altitudeM(one))).map(one =>
+        s"${scenario.name}: expected starts above 0 and up to ${FlySettings.MostAltitudeM} m, " +
+          s"got ${one.name} at ${altitudeM(one)} m"
+      ),
+      first(
+        "wire",
+        (isMavlink && hasPaused) ->
+          "expected loops other than paused over MAVLink, since its vehicles' time does not pass in steps"
+      ),
+      cars.find(altitudeM(_) != 0).map(car =>
+        s"${scenario.name}: expected cars on the ground, at 0 m, got ${car.name} at ${altitudeM(car)} m"
+      ),
+      cars.find(_ => isMavlink).map(car =>
+        s"wire: expected multirotors alone over MAVLink, got the car ${car.name}"
+      ),
+      first(
+        "images",
+        (isMavlink && images.nonEmpty) -> "expected none with wire mavlink, which carries no images"
+      ),
+      first("only-policies", (onlyPolicies && policies.isEmpty) -> "expected policies beside it, got none"),
+      Moves.mistake(movesInFlight).map("moves-in-flight: " + _),
+      inPackets,
+      ofKnowledge,
+      ofStrangers,
+      apart,
+      ofOnly,
+      ofBetween,
+      first(
+        "solver",
+        (solver.isDefined && !loops.exists(FlySettings.decidedElsewhere)) ->
+          "expected with a loop whose decisions can be made elsewhere, got with paused alone"
+      ),
+      first(
+        "solver",
+        (solver.isDefined && policies.exists(OutsidePolicy.decides)) ->
+          "expected with policies that both processes have, got with one behind a socket"
+      ),
+      deadline.filter(_ <= Span.Zero).map(within =>
+        s"deadline: expected more than 0, got ${within.toMillis} ms"
+      ),
+      late,
+      idle,
+      policies.find(!isFlown(_)).map(file =>
+        s"policies: expected with a scenario of a ${PolicyFile.name(file.role)} and " +
+          s"vehicles of another role, got with '${scenario.name}'"
+      )
+    ).flatten ++ planning.mistakes.map(mistake => ConfigKeys.ofMistake(s"planning.$mistake"))
+    (if mistakes.isEmpty then ofPredictor.toSeq ++ ofPlans else mistakes).map(placed)
+
+  /** A flight that is too short for its period, at the value that an option gave: the other value may be the
+    * scenario's.
+    */
+  private def tooShort: Option[String] = Option.when(duration < period * 2):
+    if isOption("period") && !isOption("duration") then
+      s"period: expected half the duration (${(duration / 2).toMillis} ms) or less, got ${period.toMillis} ms"
+    else s"duration: expected two periods (${(period * 2).toMillis} ms) or more, got ${duration.toMillis} ms"
+
+  /** Replaces the key at the beginning of a mistake by the source of its value. */
+  private def placed(mistake: String): String =
+    val (key, said) = mistake.span(_ != ':')
+    ConfigMistakes.oneLine(ConfigMistakes.at(s"skein.fly.$key", config) + said)
+
+  /** Whether a key of `skein.fly` has its value from an option. */
+  private def isOption(key: String): Boolean =
+    val path = s"skein.fly.$key"
+    config.hasPath(path) && ConfigKeys.optionOf(config.getValue(path).origin).isDefined
+
+  /** A deadline that leaves no time for the answer after the search. */
+  private def late: Option[String] =
+    val searched = planning.deadline
+    val within   = deadline.getOrElse(period)
+    first(
+      if deadline.isDefined then "deadline" else "period",
+      (solver.isDefined && loops.contains(LoopKind.Plan) && within <= searched) ->
+        (s"expected more than planning.deadline, for which a solver searches its plans, " +
+          s"${searched.toMillis} ms; got ${within.toMillis} ms")
+    )
+
+  /** An option that no loop of the flights regards. */
+  private def idle: Option[String] =
+    def areOnly(idle: AnyLoop*) = loops.nonEmpty && loops.forall(idle.contains)
+    val named                   = loops.map(_.label).mkString(", ")
+    val isTimely                = deadline.isDefined || solver.isDefined
+    first(
+      "deadline",
+      (deadline.isDefined && solver.isEmpty && areOnly(LoopKind.Paused, LoopKind.Plan)) ->
+        s"expected with a loop in which policies decide by the clock, got with $named alone"
+    )
+      .orElse(first(
+        "fallback",
+        (isOption("fallback") && !isTimely) -> "expected with deadline or solver, got it alone"
+      ))
+      .orElse(first(
+        "predictor",
+        (isOption("predictor") && !loops.exists(loop => loop == LoopKind.Plan || predicts(loop))) ->
+          s"expected with a loop that predicts, such as predictive, got with $named"
+      ))
+      .orElse(first(
+        "images",
+        (images.nonEmpty && areOnly(LoopKind.Paused)) ->
+          "expected with a loop other than paused, which records none"
+      ))
+
+  private def inPackets: Option[String] = Option.when(planInPacket):
+    first(
+      "plan-in-packet",
+      !loops.contains(LoopKind.Predictive) ->
+        "expected with the loop predictive, which foresees its commands, got without it",
+      isMavlink                                -> "expected vehicles over AirSim's protocol, got mavlink",
+      (deadline.isDefined || solver.isDefined) ->
+        "expected without deadline and solver, since the policy is asked for later moments too",
+      policies.exists(OutsidePolicy.decides) ->
+        "expected policies of this process, which are asked for later moments too, got one behind a socket",
+      cars.nonEmpty ->
+        s"expected multirotors, which hold plans, got the car ${cars.headOption.fold("")(_.name)}"
+    )
+  .flatten
+
+  private def ofKnowledge: Option[String] = first(
+    "knows",
+    (knows != Knowledge.All && loops.contains(LoopKind.Plan)) ->
+      "expected all with the loop plan, which plans against the policies of others, got positions",
+    (knows != Knowledge.All && solver.isDefined) ->
+      "expected all with a solver, which is told every command, got positions"
+  )
+
+  private def ofStrangers: Option[String] = Option.when(strangers != Strangers.Turn):
+    first(
+      "strangers",
+      (loopSettings.knows == Knowledge.All) ->
+        ("expected knows positions with it, or decentralised, since otherwise all commands are known, " +
+          s"got ${strangers.label} without"),
+      !loops.exists(predicts) ->
+        s"expected a loop that predicts, such as predictive, got ${strangers.label} without",
+      (strangers == Strangers.Belief && predictor == PredictionModel.ConstantVelocity) ->
+        "expected turn or straight with the predictor constant-velocity, which predicts all straight on, got belief"
+    )
+  .flatten
+
+  private def apart: Option[String] = Option.when(decentralised):
+    val joint = loops.find(loop => loop == LoopKind.Plan || loop.isInstanceOf[OwnLoop])
+    first(
+      "decentralised",
+      joint.isDefined ->
+        s"expected loops that decide for each vehicle by itself ($Apart), got ${joint.fold("")(_.label)}",
+      loops.forall(
+        _ == LoopKind.Paused
+      )                -> "expected a loop other than paused, which has a single controller",
+      isMavlink        -> "expected vehicles over AirSim's protocol, got mavlink",
+      solver.isDefined -> "expected no solver, which decides for all",
+      (isOption("knows") && knows == Knowledge.All) ->
+        "expected knows positions, since no message carries the commands of others, got all",
+      (fleet.agents.sizeIs > FlySettings.MostControllers) ->
+        s"expected at most ${FlySettings.MostControllers} vehicles, got ${fleet.agents.size}"
+    )
+  .flatten
+
+  private def ofOnly: Option[String] = settings.only.flatMap: name =>
+    first(
+      "only",
+      !decentralised -> s"expected decentralised with it, got '$name' without",
+      own.isEmpty    -> s"expected one of ${fleet.agents.map(_.name).mkString(", ")}, got '$name'",
+      hasPaused      -> "expected loops other than paused, which stops the time of all vehicles"
+    )
+
+  private def ofBetween: Option[String] = between.flatMap: link =>
+    first(
+      "between",
+      !decentralised -> s"expected decentralised with it, got '${link.text}' without",
+      only.isDefined ->
+        s"expected all controllers in this process, which carries their messages, got only ${only.getOrElse("")}"
+    )
+
+  /** Whether a policy can replace one in this fleet: its opponent is the nearest of another role. */
+  private def isFlown(file: PolicyFile) =
+    fleet.agents.map(_.role).distinct.sizeIs > 1 && fleet.agents.exists(_.role == file.role)
+
+  private def ofPredictor: Option[String] = multirotors.iterator
+    .flatMap(one => PredictionModel.mistake(predictor, altitudeM(one)))
+    .nextOption()
+    .map("predictor: " + _)
+
+  private def ofPlans: Option[String] =
+    val planned = plans.filter(_.loop == LoopKind.Plan).map(plan => plan -> plan.fleet(settings))
+    val none    = planned.flatMap((_, fleet) => Planning.told(fleet).left.toOption).map("loops: " + _)
+    val other   = planned.iterator
+      .flatMap((plan, fleet) => JointPlanning.of(fleet, loopSettings(plan)).left.toOption)
+      .map("predictor: " + _)
+    none.headOption.orElse(other.nextOption())
+
+private object FlightMistakes:
+  private val Apart = "paused, sequential, futures, stream, predictive"
+
+  /** The first mistake that is made, at a key. */
+  private def first(key: String, mistakes: (Boolean, String)*): Option[String] =
+    mistakes.collectFirst { case (true, what) => s"$key: $what" }
+
+  private def altitudeM(agent: Agent) = -agent.startPositionNed.z
+
+  private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= FlySettings.MostAltitudeM
+
+  private def predicts(loop: AnyLoop) = loop == LoopKind.Predictive || loop.isInstanceOf[OwnLoop]

@@ -90,21 +90,15 @@ private[settings] object RecordedSetting:
       Option.when(wrong.isEmpty)(sources)
 
   given RecordedSetting[PredictionModel] with
-    private val text =
-      Text[PredictionModel](PredictionModel.recordedForms, PredictionModel.text)(PredictionModel.recorded)
+    private def text(parse: Scenarios ?=> String => Option[PredictionModel]) =
+      Text[PredictionModel](PredictionModel.recordedForms, PredictionModel.text)(parse)
 
-    // In recordings of older versions.
-    private val model =
-      Text[PredictionModel](
-        PredictionModel.recordedForms,
-        PredictionModel.text
-      )(PredictionModel.recordedAsModel)
-
-    def written(name: String, value: PredictionModel): Seq[ParameterRow] = text.written(name, value)
+    def written(name: String, value: PredictionModel): Seq[ParameterRow] =
+      text(PredictionModel.recorded).written(name, value)
 
     def read(name: String, parameters: Map[String, String])(using Scenarios) =
-      if parameters.contains(name) then text.read(name, parameters)
-      else model.read(OlderPredictor, parameters)
+      if parameters.contains(name) then text(PredictionModel.recorded).read(name, parameters)
+      else text(PredictionModel.recordedAsModel).read(OlderPredictor, parameters)
 
   /** The parameter of the predictor in recordings of older versions. */
   val OlderPredictor = "model"

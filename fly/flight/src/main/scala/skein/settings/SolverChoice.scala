@@ -37,7 +37,7 @@ object SolverChoice:
           s"expected a PREFIX of topics of letters, digits, '.', '_' and '-', got '$prefix'"
         )
       yield Kafka(at, name)
-    case s"link:$profile" => LatencyProfile.parse(profile, TextFile.read).map(Link(_)).left.map(_.message)
+    case s"link:$profile" => LinkText.profile(profile).map(Link(_))
     case s"pekko://$_"    =>
       Left(
         s"expected $expected, got '$text': solvers speak a " +

@@ -25,8 +25,6 @@ object VehicleLink:
     case _ => profile(text).map(VehicleLink(_, None))
 
   private def profile(text: String): Either[String, LatencyProfile] =
-    LatencyProfile
-      .parse(text, TextFile.read)
-      .left
-      .map(_.message)
+    LinkText
+      .profile(text)
       .filterOrElse(_.bandwidth.isEmpty, s"expected no rate, since messages have no size, got '$text'")

@@ -34,32 +34,25 @@ final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans]
   ): Future[(Vector[Chosen], Any)] =
     plans.filter(_.planning.vehicles.contains(question.vehicle)) match
       case Some(plans) =>
+        import plans.planning
+        // A policy that decides instead of a plan keeps no memory.
+        val memories =
+          question.deciders.map((vehicle, memory) => memory.copy(held = Decider(fleet, vehicle).start.held))
+        val views   = memories.map(_ => question.view)
+        val problem = PlanProblem(planning.planner, planning.pose(memories, views, now))
         // Every memory was made by this planner.
-        planned(plans, question, held.map(_.asInstanceOf[PlanStage.Answer]), now)
+        val last = held.map(_.asInstanceOf[PlanStage.Answer])
+        PlanStage
+          .searched(problem, last, plans.deadline, plans.workers, planner)
+          .map { answer =>
+            val (_, made) = planning.decide(memories, views, now, problem.parts, answer)
+            (made.map(one => Chosen(one.decision.action, Some(one.plan))), answer)
+          }(using ExecutionContext.parasitic)
       case None =>
         val decider          = Decider(fleet, question.vehicle)
         val memory           = question.deciders.head.memory.copy(held = held.getOrElse(decider.start.held))
         val (next, decision) = decider.decide(memory, question.view, now)
         Future.successful((Vector(Chosen(decision.action)), next.held))
-
-  private def planned(
-      plans: FlightDeciders.Plans,
-      question: Question,
-      last: Option[PlanStage.Answer],
-      now: Instant
-  )(using ActorSystem): Future[(Vector[Chosen], PlanStage.Answer)] =
-    import plans.planning
-    // A policy that decides instead of a plan keeps no memory.
-    val memories =
-      question.deciders.map((vehicle, memory) => memory.copy(held = Decider(fleet, vehicle).start.held))
-    val views   = memories.map(_ => question.view)
-    val problem = PlanProblem(planning.planner, planning.pose(memories, views, now))
-    PlanStage
-      .searched(problem, last, plans.deadline, plans.workers, planner)
-      .map { answer =>
-        val (_, made) = planning.decide(memories, views, now, problem.parts, answer)
-        (made.map(one => Chosen(one.decision.action, Some(one.report(answer.slices)))), answer)
-      }(using ExecutionContext.parasitic)
 
   def close(): Unit = plans.foreach(_.workers.close())
 

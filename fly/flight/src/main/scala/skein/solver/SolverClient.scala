@@ -68,10 +68,7 @@ final class SolverClient(
     started.future.andThen(_ => lock.synchronized(late).foreach(_.cancel()))
 
   /** Why no solver has accepted the flight so far. */
-  def whyNone: String = lock.synchronized(standing) match
-    case Standing.Greeting(why) => why
-    case Standing.Refused(why)  => why
-    case Standing.Welcome       => "it is there"
+  def whyNone: String = lock.synchronized(standing).why
 
   def delay: Span = lock.synchronized(exchange.delay)
 
@@ -89,9 +86,8 @@ final class SolverClient(
       searching: Span
   ): Future[Solved] = lock.synchronized:
     standing match
-      case Standing.Greeting(why) => Future.failed(NoSolver(why))
-      case Standing.Refused(why)  => Future.failed(NoSolver(why))
-      case Standing.Welcome       =>
+      case Standing.Greeting(_) | Standing.Refused(_) => Future.failed(NoSolver(standing.why))
+      case Standing.Welcome                           =>
         val vehicle        = deciders.head.vehicle
         val (next, number) = exchange.asked(vehicle, askedAt, until, searching)
         val used           = remembered.map(last => (solver = last.solver, question = last.question))
@@ -102,7 +98,7 @@ final class SolverClient(
             val answer = Promise[Solved]()
             val known = exchange.clocks.map(known => (offset = known.offset, uncertainty = known.uncertainty))
             exchange = next
-            waiting = waiting.updated(vehicle, Waiting(number, deciders.size, known, answer))
+            waiting = waiting.updated(vehicle, Waiting(deciders.size, known, answer))
             answer.future
 
   def close(): Future[Done] =
@@ -201,16 +197,16 @@ final class SolverClient(
     greet()
 
   private def greet(): Unit =
-    val why = lock.synchronized(standing) match
-      case Standing.Greeting(_) => open.send(hello).left.toOption
-      case _                    => None
-    for reason <- why do
-      lock.synchronized:
-        if standing.isInstanceOf[Standing.Greeting] then standing = Standing.Greeting(reason)
+    if lock.synchronized(greets) then
+      for why <- open.send(hello).left do
+        lock.synchronized:
+          if greets then standing = Standing.Greeting(why)
+
+  private def greets: Boolean = standing.isInstanceOf[Standing.Greeting]
 
   private def prepares(): Unit = lock.synchronized:
     preparedAt = Some(clock.now())
-    if standing.isInstanceOf[Standing.Greeting] then standing = Standing.Greeting(StillPreparing)
+    if greets then standing = Standing.Greeting(StillPreparing)
 
   private def welcomed(): Unit =
     if rehearses() then greet()
@@ -252,13 +248,12 @@ object SolverClient:
     override def toString: String = reason
 
   private final case class Waiting(
-      number: Long,
       vehicles: Int,
       clock: Option[(offset: Span, uncertainty: Span)],
       answer: Promise[Solved]
   )
 
-  private enum Standing:
-    case Greeting(why: String)
-    case Welcome
-    case Refused(why: String)
+  private enum Standing(val why: String):
+    case Greeting(reason: String) extends Standing(reason)
+    case Welcome                  extends Standing("it is there")
+    case Refused(reason: String)  extends Standing(reason)

@@ -3,7 +3,6 @@ package skein.solver
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.{ExecutionContext, Future}
-import scala.util.{Failure, Success}
 import skein.units.*
 
 /** A solver: decides for every flight that it accepts, over any link.
@@ -52,13 +51,7 @@ final class SolverDesk(
         None
       case SolverMessage.Ask(question)   => offered(question, reply)
       case SolverMessage.Goodbye(flight) =>
-        val ended = lock.synchronized:
-          val ended = sessions.get(flight)
-          sessions = sessions.removed(flight)
-          ended
-        for session <- ended do
-          told(s"flight ${flight.toHexString} has ended")
-          session.deciders.close()
+        if leaving(_.removed(flight)) > 0 then told(s"flight ${flight.toHexString} has ended")
         None
       case _ => None
     for (flight, vehicle) <- asked.distinct do next(flight, vehicle)
@@ -95,21 +88,16 @@ final class SolverDesk(
       Future(decidersOf(briefing))(using workers).onComplete { result =>
         lock.synchronized:
           greeting -= flight
-        result match
-          case Success(Right(deciders)) =>
+        val made = result.fold(error => Left(s"it cannot be decided for: $error"), identity)
+        made.flatMap(deciders => differing(briefing, deciders).toLeft(deciders)) match
+          case Left(reason) =>
+            made.foreach(_.close())
+            no(reason)
+          case Right(deciders) =>
             val vehicles = deciders.fleet.agents.size
-            differing(briefing.agents, Briefing.agents(deciders.fleet)) match
-              case Some(reason) =>
-                deciders.close()
-                no(reason)
-              case None =>
-                admitted(flight, Session(briefing, deciders, Desk.of(vehicles), reply, 0))
-                told(
-                  s"flight ${flight.toHexString}: ${briefing.scenario}, ${briefing.loop}, $vehicles vehicles"
-                )
-                answer(SolverMessage.Welcome(flight, id))
-          case Success(Left(reason)) => no(reason)
-          case Failure(error)        => no(s"it cannot be decided for: $error")
+            admitted(flight, Session(briefing, deciders, Desk.of(vehicles), reply, 0))
+            told(s"flight ${flight.toHexString}: ${briefing.scenario}, ${briefing.loop}, $vehicles vehicles")
+            answer(SolverMessage.Welcome(flight, id))
       }(using workers)
       true
     else
@@ -126,30 +114,32 @@ final class SolverDesk(
     if isNew then greeting += flight
     isNew
 
-  private def differing(theirs: Vector[String], ours: Vector[String]): Option[String] =
-    theirs.zipAll(ours, "nobody", "nobody").collectFirst:
+  private def differing(briefing: Briefing, deciders: FlightDeciders): Option[String] =
+    briefing.agents.zipAll(Briefing.agents(deciders.fleet), "nobody", "nobody").collectFirst:
       case (there, here) if there != here =>
         s"the scenario is another here: the flight has $there, this solver $here"
 
   private def admitted(flight: Long, session: Session): Unit =
-    val left = lock.synchronized:
+    // Flights that ended without a goodbye are removed in the end.
+    val _ = leaving: sessions =>
       uses += 1
       val others = sessions.removed(flight)
-      // Flights that ended without a goodbye are removed in the end.
-      val kept =
-        if others.size < MostFlights then others else others.removed(others.minBy(_._2.usedAt)._1)
-      val left = sessions.removedAll(kept.keys).values
-      sessions = kept.updated(flight, session.copy(usedAt = uses))
-      left
-    left.foreach(_.deciders.close())
+      val kept   = if others.size < MostFlights then others else others.removed(others.minBy(_._2.usedAt)._1)
+      kept.updated(flight, session.copy(usedAt = uses))
 
   /** Ends all flights' sessions and the planners of their decisions. */
-  def close(): Unit =
+  def close(): Unit = leaving(_ => Map.empty): Unit
+
+  /** Changes the sessions, and closes those that are replaced or left out; returns their number. */
+  private def leaving(change: Map[Long, Session] => Map[Long, Session]): Int =
     val left = lock.synchronized:
-      val left = sessions.values
-      sessions = Map.empty
-      left
+      val before = sessions
+      sessions = change(before)
+      before.filterNot((flight, session) =>
+        sessions.get(flight).exists(_.deciders eq session.deciders)
+      ).values
     left.foreach(_.deciders.close())
+    left.size
 
   /** Adds a request. Returns the vehicle with a decision that may begin now, if any. */
   private def offered(question: Question, reply: Array[Byte] => Unit): Option[(Long, Int)] =

@@ -84,7 +84,7 @@ class PlanningSuite extends munit.FunSuite:
     val memory    = Memory(0.25, Some(now - Span.ofMillis(200)), 7)
     val posed     = planning.pose(memory, view, now)
     val plan      = JointPlanner().resumed(PlanProblem(planning.planner, Vector(posed)), None).plans.head
-    val (_, made) = planning.decide(memory, view, now, posed, plan, isOld)
+    val (_, made) = planning.decide(memory, view, now, posed, plan, Vector.empty, isOld)
     (made.decision, made)
 
   test(
@@ -95,7 +95,7 @@ class PlanningSuite extends munit.FunSuite:
     for (turn, heading) <- Seq(2.0 -> 0.5, -2.0 -> 0.0, 0.125 -> 0.375, -0.125 -> 0.125) do
       val (decision, made) = byPolicy(turn, PlanSettings())
       assertEqualsDouble(decision.heading.value, heading, 1e-9)
-      assertEquals((decision.action.speed, made.byPolicy), (fleet.agents(pursuer).speed, true))
+      assertEquals((decision.action.speed, made.plan.byPolicy), (fleet.agents(pursuer).speed, true))
 
   test("a plan chooses the speed if the limit is below the vehicle's own"):
     val slower = PlanSettings(kept = Vector(Kept.NoFaster(5)))
@@ -264,7 +264,7 @@ class PlanningSuite extends munit.FunSuite:
     val planning         = teamwork(team, Moving(), PlanSettings())
     val (decision, made) = decidedBy(planning, isOld = true)
     assertEqualsDouble(decision.heading.value, 0, 1e-12)
-    assertEquals((decision.action.speed, made.byPolicy), (MetresPerSecond(3), true))
+    assertEquals((decision.action.speed, made.plan.byPolicy), (MetresPerSecond(3), true))
 
   test(
     "a plan is used if it saves a tenth of a metre against the policy's manoeuvre; else the policy decides"
@@ -278,9 +278,10 @@ class PlanningSuite extends munit.FunSuite:
     val speeds               = (0 to 500).map(_ / 100.0)
     def flown(speed: Double) = Manoeuvre.straight(speed, planning.planner.steps)
     def begun(suggested: Double, planned: Double) =
-      val part = posed.copy(situation = posed.situation.copy(suggested = Vector(flown(suggested))))
-      val plan = plans.plans.head.copy(manoeuvre = flown(planned))
-      planning.decide(memory, view, now, part, plan, isOld = false)._2.decision.action.speed.value
+      val part      = posed.copy(situation = posed.situation.copy(suggested = Vector(flown(suggested))))
+      val plan      = plans.plans.head.copy(manoeuvre = flown(planned))
+      val (_, made) = planning.decide(memory, view, now, part, plan, Vector.empty, isOld = false)
+      made.decision.action.speed.value
     val costs                                   = speeds.map(speed => speed -> rollout.fly(flown(speed)).cost)
     val (best, least)                           = costs.minBy(_._2)
     def worse(from: Double, to: Double): Double =
@@ -298,7 +299,7 @@ class PlanningSuite extends munit.FunSuite:
     val plans    = JointPlanner().resumed(PlanProblem(joint.planner, parts), None)
     def byPolicy(unsearchedS: Double*) =
       val answer = planning.PlanStage.Answer(plans, Vector(0), unsearchedS.toVector)
-      joint.decide(memories, views, now, parts, answer)._2.map(_.byPolicy)
+      joint.decide(memories, views, now, parts, answer)._2.map(_.plan.byPolicy)
     assertEquals(byPolicy(0.5, 0.501), Vector(false, true))
     assertEquals(byPolicy(0.501, 0), Vector(true, false))
     assertEquals(

@@ -29,15 +29,10 @@ class TeamSensingSuite extends munit.FunSuite:
       def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] = Future.never
       def hover(): Future[Either[VehicleError, Boolean]]                          = Future.never
     val sensing = TeamSensing(
-      fleet,
       Vector.fill(2)(port),
-      Vector(0),
-      clock,
-      LoopSettings(),
       None,
       Some(messages),
-      TeamParts(fleet),
-      TeamLog(fleet, deciders, clock, recorder)
+      TeamParts(fleet, Vector(0), clock, LoopSettings(), TeamLog(fleet, deciders, clock, recorder))
     )
     def receive() = for number <- 0 to 4 do take(Reading(1, number, stamped(1000, 110, 1420)))
     receive()

@@ -66,9 +66,7 @@ private[kafka] final class KafkaPipe(
           val _ = reading.tryFailure(error)
           if !closing.get then lost(s"$does no more: $error")
       finally if leftOver.decrementAndGet() == 0 then closed.trySuccess(()): Unit
-    val started = Thread(runs, s"skein-kafka-$does-$from")
-    started.setDaemon(true)
-    started.start()
+    Thread.ofPlatform.daemon.name(s"skein-kafka-$does-$from").start(runs): Unit
 
   /** Whether the broker can be used; waits until it is reachable. */
   @tailrec

@@ -24,10 +24,4 @@ final class AirSimAnalysis extends Analysis[Observed]:
     conversations.remove(connection): Unit
     account.add(Passed.Closed(connection, at))
 
-  def passedOver(count: Long): Unit = account.passedOver(count)
-
-  def progress: Progress = account.progress
-
-  def takeNew(): Vector[NewCommands] = account.takeNew()
-
-  def observed: Observed = account.observed
+  export account.{observed, passedOver, progress, takeNew}

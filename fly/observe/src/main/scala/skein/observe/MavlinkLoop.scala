@@ -90,9 +90,7 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
 
   def passedOver(count: Long): Unit = over += count
 
-  def progress: Progress = account.progress
-
-  def takeNew(): Vector[NewCommands] = account.takeNew()
+  export account.{progress, takeNew}
 
   def observed: ObservedTopics =
     val before = account.observed

@@ -3,6 +3,7 @@ package skein.observe
 import java.io.{IOException, InputStream}
 import java.nio.charset.StandardCharsets.UTF_8
 import java.util.concurrent.{CompletableFuture, TimeUnit, TimeoutException}
+import scala.collection.mutable
 import scala.jdk.CollectionConverters.*
 import scala.jdk.StreamConverters.*
 import skein.units.Span
@@ -58,8 +59,7 @@ object OutsideProgram:
 
   /** Reads a stream to its end and keeps the last [[KeptBytes]]. */
   private final class Tail(stream: InputStream):
-    private val kept  = Array.ofDim[Byte](KeptBytes)
-    private var count = 0L
+    private val kept = mutable.ArrayDeque.empty[Byte]
 
     private val reading = Thread.ofVirtual().start: () =>
       val piece = Array.ofDim[Byte](8 << 10)
@@ -67,14 +67,11 @@ object OutsideProgram:
       catch case _: IOException => () // its end closed the pipe
 
     private def keep(piece: Array[Byte], size: Int): Unit = synchronized:
-      for index <- 0 until size do
-        kept((count % KeptBytes).toInt) = piece(index)
-        count += 1
+      kept ++= piece.take(size)
+      kept.takeRightInPlace(KeptBytes): Unit
 
     def await(millis: Long): Unit = reading.join(millis)
 
-    def text: String = synchronized:
-      val from = (count - KeptBytes).max(0)
-      String(Array.tabulate((count - from).toInt)(index => kept(((from + index) % KeptBytes).toInt)), UTF_8)
+    def text: String = synchronized(String(kept.toArray, UTF_8))
 
     def lastLine: Option[String] = text.linesIterator.map(_.trim).filter(_.nonEmpty).toSeq.lastOption

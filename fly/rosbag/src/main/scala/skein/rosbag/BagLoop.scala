@@ -41,24 +41,25 @@ object BagLoop:
     */
   private def add(file: Path, loop: TopicLoop): Either[String, Iterable[String]] =
     val topics = mutable.Map.empty[Int, (name: String, add: Option[TopicLoop.Topic])]
-    try
-      McapFile.read(file): messages =>
-        val failed = messages
-          .flatMap:
-            case Left(error)    => Some(s"$file: ${error.message}")
-            case Right(message) =>
-              val name  = message.channel.topic
-              def topic = loop.topic(
-                name,
-                message.schema.fold("")(_.name),
-                message.schema.fold("")(_.data.utf8)
-              )
-              val known = topics.getOrElseUpdate(message.channel.id, (name = name, add = topic))
-              known.add.foreach(_(message.message.data, Instant.ofNanos(message.message.logTime)))
-              None
-          .nextOption()
-        failed.toLeft(topics.values.map(_.name))
-    catch case failed: IOException => Left(s"cannot read $file: ${FileReason.of(failed)}")
+    FileReason
+      .attempt(why => s"cannot read $file: $why"):
+        McapFile.read(file): messages =>
+          val failed = messages
+            .flatMap:
+              case Left(error)    => Some(s"$file: ${error.message}")
+              case Right(message) =>
+                val name  = message.channel.topic
+                def topic = loop.topic(
+                  name,
+                  message.schema.fold("")(_.name),
+                  message.schema.fold("")(_.data.utf8)
+                )
+                val known = topics.getOrElseUpdate(message.channel.id, (name = name, add = topic))
+                known.add.foreach(_(message.message.data, Instant.ofNanos(message.message.logTime)))
+                None
+            .nextOption()
+          failed.toLeft(topics.values.map(_.name))
+      .flatten
 
   /** Time of a file's first message; by their names, the eleventh file of a bag would come before the third.
     */

@@ -1,6 +1,5 @@
 package skein.rosbag
 
-import java.io.IOException
 import java.nio.file.{Files, Path}
 import scala.collection.immutable.VectorMap
 import scala.collection.mutable
@@ -24,9 +23,8 @@ object RosBag:
   def write(recording: Path, folder: Path): Either[String, VectorMap[String, Long]] =
     for
       rows    <- RecordingReader.records(recording).left.map(_.message)
-      written <-
-        try Right(write(BagMessages(rows.map(_._2)).all, folder))
-        catch case failed: IOException => Left(s"cannot write the bag $folder: ${FileReason.of(failed)}")
+      written <- FileReason.attempt(why => s"cannot write the bag $folder: $why"):
+        write(BagMessages(rows.map(_._2)).all, folder)
     yield written
 
   private def write(messages: Iterator[BagMessage], folder: Path): VectorMap[String, Long] =

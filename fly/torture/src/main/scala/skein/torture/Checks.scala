@@ -56,7 +56,7 @@ object Checks:
     for
       (vehicle, port) <- seen.vehicles.zip(seen.ports) if seen.faultPlan.loop != LoopKind.Paused
       (one, next)     <- port.sendings.zip(port.sendings.drop(1)).find: (one, next) =>
-        next.at.since(one.at) < seen.minCommandInterval
+        next.at.since(one.at) < seen.settings.minCommandInterval
     yield s"$vehicle: two commands within " +
       s"${next.at.since(one.at).toMillis.fixed(3)} ms, at ${ms(seen, one.at)}"
 
@@ -133,12 +133,13 @@ object Checks:
   private def unbounded(seen: FlightTrace): Vector[String] =
     // Each sensor that a policy reads is requested separately from the vehicle.
     val sensors = seen.faultPlan.scenario.agents.map(_.policy.sensors.size).sum
-    val most    = seen.vehicles.size.toLong * (seen.window + Moves.InFlight + SignsOfLife) +
-      sensors * seen.window + seen.images.size * ImagesOnTheWay
+    val most    = seen.vehicles.size.toLong * (seen.settings.window + Moves.InFlight + SignsOfLife) +
+      sensors * seen.settings.window + seen.images.size * ImagesOnTheWay
     // Steps may take no time on the controller's clock: then they measure the flight's length.
-    val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
-    val rows  = Recorded.rows(seen.recording)
-    val each  =
+    val flown =
+      seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.settings.period.toSeconds) + 1
+    val rows = Recorded.rows(seen.recording)
+    val each =
       if seen.faultPlan.scenario.isAsPublished then RowsPerSecond + 20 * seen.vehicles.size
       else RowsPerSecond
     val allowed = seen.vehicles.size * flown * each

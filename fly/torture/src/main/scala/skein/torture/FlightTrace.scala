@@ -1,9 +1,9 @@
 package skein.torture
 
 import skein.flight.CameraSensor
-import skein.loop.FlightOutcome
+import skein.loop.{FlightOutcome, LoopSettings}
 import skein.record.{Record, RecordError, Recording}
-import skein.rpc.{RpcSettings, RpcStats}
+import skein.rpc.RpcStats
 import skein.units.*
 
 /** External observations of one flight, by which it is checked.
@@ -25,20 +25,15 @@ import skein.units.*
   */
 final case class FlightTrace(
     faultPlan: FaultPlan,
-    window: Int,
-    minCommandInterval: Span,
-    period: Span,
-    patience: Span,
+    settings: LoopSettings,
     startedAt: Instant,
     endedAt: Instant,
     outcome: FlightOutcome,
-    vehicles: Vector[String],
     ports: Vector[WatchedVehicle],
     arrivals: Vector[ReceivedMove],
     lastHovers: Map[String, Instant],
     mostUnanswered: Int,
     mostPending: Long,
-    settings: RpcSettings,
     stats: RpcStats,
     recording: Recording,
     offered: Vector[Record],
@@ -50,6 +45,8 @@ final case class FlightTrace(
     leftPaused: Boolean,
     images: Vector[CameraSensor.Counts]
 ):
+  def vehicles: Vector[String] = faultPlan.scenario.agents.map(_.name)
+
   def calmFrom: Instant = startedAt + faultPlan.calmFrom
 
 object FlightTrace:

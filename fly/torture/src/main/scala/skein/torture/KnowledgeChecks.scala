@@ -39,8 +39,8 @@ private[torture] object KnowledgeChecks:
   private def outdated(seen: FlightTrace, told: Map[String, Vector[ReportedState]]): Vector[String] =
     val joins = seen.faultPlan.loop match
       case LoopKind.Sequential => Span.Zero
-      case LoopKind.Stream     => seen.patience
-      case _                   => seen.period
+      case LoopKind.Stream     => seen.settings.patience
+      case _                   => seen.settings.period
     val histories = told.map((vehicle, answers) => vehicle -> History(answers))
     firstOf(seen): (decision, used) =>
       histories(used.vehicle)

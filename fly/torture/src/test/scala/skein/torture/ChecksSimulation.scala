@@ -99,12 +99,14 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       assert(found(clean.copy(recording = forged)).contains("on record"), forged.flight.id)
 
   test("the checks find a rate above the limit, and too many pending calls"):
-    assert(found(clean.copy(minCommandInterval = Span.ofMillis(300))).contains("two commands within"))
+    assert(found(clean.copy(settings =
+      clean.settings.copy(minCommandInterval = Span.ofMillis(300))
+    )).contains("two commands within"))
     assert(found(clean.copy(mostPending = 1000)).contains("1000 calls were under way at once"))
     assert(found(clean.copy(mostUnanswered = 5)).contains("5 unanswered moves"))
 
   test("the checks accept values at their limits"):
-    val most = clean.vehicles.size * (clean.window + 3L)
+    val most = clean.vehicles.size * (clean.settings.window + 3L)
     assertEquals(found(clean.copy(mostPending = most, mostUnanswered = 4)), "")
     assert(found(clean.copy(mostPending = most + 1)).contains(s"of $most at most"))
     assertEquals(found(clean.copy(drifts = Vector(Metres(14), Metres(14)))), "")
@@ -112,8 +114,10 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     val gaps =
       for port <- clean.ports; (one, next) <- port.sendings.zip(port.sendings.tail)
       yield next.at.since(one.at)
-    assertEquals(found(clean.copy(minCommandInterval = gaps.min)), "")
-    assert(found(clean.copy(minCommandInterval = gaps.min + Span.ofNanos(1))).contains("two commands within"))
+    assertEquals(found(clean.copy(settings = clean.settings.copy(minCommandInterval = gaps.min))), "")
+    assert(found(clean.copy(settings =
+      clean.settings.copy(minCommandInterval = gaps.min + Span.ofNanos(1))
+    )).contains("two commands within"))
 
   test("the checks find a third unanswered command, and calls of vehicles and stepper that did not end"):
     val counts = clean.ports.head.commands
@@ -196,7 +200,10 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     few.begun = 1
     few.ended = 1
     assert(
-      found(short.copy(steps = few, period = Span.ofMillis(10))).contains("are many for this flight"),
+      found(short.copy(
+        steps = few,
+        settings = short.settings.copy(period = Span.ofMillis(10))
+      )).contains("are many for this flight"),
       "one step is 10 ms"
     )
     // As published every vehicle decides at every reading of any: 340 rows per second for each of two, not

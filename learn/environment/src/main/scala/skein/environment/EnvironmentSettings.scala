@@ -2,13 +2,12 @@ package skein.environment
 
 import java.util.Locale
 import scala.jdk.CollectionConverters.*
-import skein.forward.{Delays, LinkDelays, LoopTiming}
+import skein.forward.{Delays, LoopTiming}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{Agent, LearnerSpace, Role}
 import skein.port.Moves
 import skein.scenario.{Measure, PaperDuel, Reduction, Scenarios}
-import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
-import skein.signal.LatencyProfile
+import skein.settings.{FlySettings, LinkText, OutsidePolicy, PolicyFile, VehicleChoice}
 import skein.units.{Expect, Span}
 import skein.vehicle.SensorNoise
 
@@ -125,11 +124,7 @@ final case class EnvironmentSettings(
           "loop: expected paused, sequential, futures, stream or " +
             s"predictive, got '${kind.label}', which plans"
         )
-      delays <- LatencyProfile
-        .parse(link, TextFile.read)
-        .left.map(_.message)
-        .flatMap(LinkDelays.checked(_, timing, vehicles))
-        .left.map("link: " + _)
+      delays <- LinkText.delays(link, timing, vehicles).left.map("link: " + _)
     yield (timing, delays, vehicle)
 
 object EnvironmentSettings:

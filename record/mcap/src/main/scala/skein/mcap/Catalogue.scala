@@ -20,27 +20,19 @@ private[mcap] final class Catalogue:
       true
     case schema: Record.Schema if schema.id == 0 => false
     case schema: Record.Schema                   =>
-      schemas.getOrElseUpdate(schema.id, schema) match
-        case known if known != schema =>
-          Refused.malformed(
-            at,
-            s"schema ${schema.id} as it was named before, ${known.name}",
-            s"${schema.name}"
-          )
-        case _ => true
+      define(schemas, schema.id, schema, "schema", at)(_.name)
     case channel: Record.Channel =>
       if channel.schemaId != 0 && !schemas.contains(channel.schemaId) then
-        Refused.malformed(
-          at,
-          "a channel of a schema named before",
-          s"${channel.topic} of ${channel.schemaId}"
-        )
-      channels.getOrElseUpdate(channel.id, channel) match
-        case known if known != channel =>
-          Refused.malformed(
-            at,
-            s"channel ${channel.id} as it was named before, ${known.topic}",
-            s"${channel.topic}"
-          )
-        case _ => true
+        val came = s"${channel.topic} of ${channel.schemaId}"
+        Refused.malformed(at, "a channel of a schema named before", came)
+      define(channels, channel.id, channel, "channel", at)(_.topic)
     case _ => true
+
+  /** Records a definition; refuses another one of an identifier that has one. */
+  private def define[A](known: mutable.LongMap[A], id: Int, record: A, kind: String, at: Place)(
+      name: A => String
+  ): Boolean =
+    val first = known.getOrElseUpdate(id, record)
+    if first != record then
+      Refused.malformed(at, s"$kind $id as it was named before, ${name(first)}", name(record))
+    true

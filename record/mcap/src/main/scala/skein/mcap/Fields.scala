@@ -3,7 +3,6 @@ package skein.mcap
 import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.charset.{CharacterCodingException, CodingErrorAction}
 import java.nio.{ByteBuffer, ByteOrder}
-import java.util.zip.CRC32
 import scala.collection.immutable.{SeqMap, VectorMap}
 
 /** Reads the fields of one record, in order. Bytes after the last field read belong to a later version of the
@@ -77,10 +76,7 @@ private[mcap] final class Fields(array: Array[Byte], from: Int, until: Int, reco
       )
     found.result()
 
-  def crc: Int =
-    val sum = CRC32()
-    sum.update(array, from, at - from)
-    sum.getValue.toInt
+  def crc: Int = Checksum.of(array, from, at)
 
   def expectEnd(): Unit =
     if at < until then

@@ -67,18 +67,6 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
     * @param publishTime when it was sent, ns; the log time if unknown
     */
   def message(channelId: Int, sequence: Int, logTime: Long, publishTime: Long, data: Bytes): Unit =
-    message(channelId, sequence, logTime, publishTime, data.array, data.from, data.from + data.size)
-
-  /** Writes a message whose data is `data[from, until)`. */
-  def message(
-      channelId: Int,
-      sequence: Int,
-      logTime: Long,
-      publishTime: Long,
-      data: Array[Byte],
-      from: Int,
-      until: Int
-  ): Unit =
     open()
     require(channelId > 0 && channelId <= channels.size, s"no channel $channelId has been named")
     val log    = channels(channelId - 1)
@@ -89,12 +77,12 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
     times.add(logTime)
     log.count += 1
     target.u8(Opcode.Message)
-    target.u64(22L + until - from)
+    target.u64(22L + data.size)
     target.u16(channelId)
     target.u32(sequence)
     target.u64(logTime)
     target.u64(publishTime)
-    target.raw(data, from, until)
+    target.raw(data.array, data.from, data.from + data.size)
     room()
 
   /** @param createTime ns; 0 if unknown */

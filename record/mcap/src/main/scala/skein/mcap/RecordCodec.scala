@@ -1,7 +1,5 @@
 package skein.mcap
 
-import java.util.zip.CRC32
-
 /** Encodes records as bytes, and decodes them. */
 private[mcap] object RecordCodec:
 
@@ -43,9 +41,7 @@ private[mcap] object RecordCodec:
       out.string(attachment.mediaType)
       out.u64(attachment.data.size)
       out.raw(attachment.data)
-      val crc = CRC32()
-      crc.update(out.array, at, out.size - at)
-      out.u32(crc.getValue.toInt)
+      out.u32(Checksum.of(out.array, at, out.size))
 
   /** Decodes the record whose content is `array[from, until)`; it keeps a view of the array. `place` is the
     * record's start.
@@ -69,11 +65,7 @@ private[mcap] object RecordCodec:
   private def hold(record: Record, fields: Fields, place: Place): Unit = record match
     case _: Record.Footer => fields.expectEnd()
     case Record.MessageIndex(_, entries) if entries.size % 16 != 0 =>
-      Refused.malformed(
-        place,
-        "entries of 16 bytes in its Message Index record",
-        s"${entries.size} bytes"
-      )
+      Refused.malformed(place, "entries of 16 bytes in its Message Index record", s"${entries.size} bytes")
     case _ => ()
 
   private def message(fields: Fields) =

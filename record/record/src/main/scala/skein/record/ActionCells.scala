@@ -40,18 +40,8 @@ private[record] object ActionCells:
     case Action.Hover | Action.Land => cells(action, Vector3.Zero, 0, Yaw.Still)
 
   private def cells(action: Action, numbers: Vector3, amount: Double, yaw: Yaw): ActionCells =
-    val (mode, value) = yaw match
-      case Yaw.Still            => ("Still", 0.0)
-      case Yaw.Towards(heading) => ("Towards", heading.value)
-      case Yaw.Turning(rate)    => ("Turning", rate)
-      case Yaw.Forward          => ("Forward", 0.0)
-    ActionCells(nameOf(action), numbers.x, numbers.y, numbers.z, amount, mode, value)
-
-  private def nameOf(action: Action): String = action match
-    case _: Action.Velocity                    => "Velocity"
-    case _: (Action.VelocityAt | Action.Along) => "VelocityAt"
-    case _: Action.Position                    => "Position"
-    case _: Action.Turn                        => "Turn"
-    case _: Action.Attitude                    => "Attitude"
-    case Action.Hover                          => "Hover"
-    case Action.Land                           => "Land"
+    val turn = yaw match
+      case Yaw.Towards(heading)    => heading.value
+      case Yaw.Turning(rate)       => rate
+      case Yaw.Still | Yaw.Forward => 0.0
+    ActionCells(action.productPrefix, numbers.x, numbers.y, numbers.z, amount, yaw.productPrefix, turn)

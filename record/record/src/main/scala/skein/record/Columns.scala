@@ -249,23 +249,21 @@ private[record] object Columns:
     * equals the digest in an earlier format.
     */
   def added[A](columns: Columns[Option[A]]): Columns[Option[A]] = new Columns[Option[A]]:
-    val definitions: Vector[Column]                   = columns.definitions
+    export columns.{definitions, read}
     def append(value: Option[A], to: RowWriter): Unit =
       if value.isEmpty then definitions.foreach(_ => to.nothingYet()) else columns.append(value, to)
-    def read(cells: Cells): Option[A] = columns.read(cells)
 
   /** A column that a file of an older format stores in another form. */
-  def migrated[A](columns: Columns[A], older: String): Columns[A] = new Columns[A]:
-    val definitions: Vector[Column]           = columns.definitions.map(_.copy(older = Some(older)))
-    def append(value: A, to: RowWriter): Unit = columns.append(value, to)
-    def read(cells: Cells): A                 = columns.read(cells)
+  def migrated[A](columns: Columns[A], older: String): Columns[A] =
+    redefined(columns)(_.copy(older = Some(older)))
 
   /** Columns with a prefix before every name: `validAtNs` becomes `ownValidAtNs`. */
-  def prefixed[A](prefix: String, columns: Columns[A]): Columns[A] = new Columns[A]:
-    val definitions: Vector[Column] =
-      columns.definitions.map(column => column.copy(name = prefix + column.name.capitalize))
-    def append(value: A, to: RowWriter): Unit = columns.append(value, to)
-    def read(cells: Cells): A                 = columns.read(cells)
+  def prefixed[A](prefix: String, columns: Columns[A]): Columns[A] =
+    redefined(columns)(column => column.copy(name = prefix + column.name.capitalize))
+
+  private def redefined[A](columns: Columns[A])(change: Column => Column): Columns[A] = new Columns[A]:
+    val definitions: Vector[Column] = columns.definitions.map(change)
+    export columns.{append, read}
 
   extension [A](columns: Columns[A])
     def as[B](from: A => B, to: B => A): Columns[B] = new Columns[B]:

@@ -16,14 +16,40 @@ import scala.util.{Failure, Success}
   * for the disk.
   */
 final class DuckDbRecorder private (
+    file: RecordingFile,
     capacity: Int,
-    writer: RecordWriter,
-    waitingBytes: AtomicLong,
-    failed: Promise[RecordError],
-    ending: AtomicReference[Option[Ending]],
-    closing: Promise[Unit],
-    closed: Future[Either[RecordError, Written]]
-) extends Recorder:
+    rows: DuckDbRecorder.Numbered,
+    threads: ThreadFactory
+)(using ExecutionContext)
+    extends Recorder:
+  private val failed       = Promise[RecordError]()
+  private val ending       = AtomicReference(Option.empty[Ending])
+  private val closing      = Promise[Unit]()
+  private val waitingBytes = AtomicLong()
+
+  private val writer =
+    import DuckDbRecorder.{batchSize, commitInterval}
+    RecordWriter(capacity, commitInterval.toNanos, batchSize, threads): batch =>
+      val written = file.write(batch)
+      written.left.foreach(failed.trySuccess)
+      if written.isRight then rows.put(batch)
+      for blob <- batch.iterator.flatMap(Record.blobOf) do waitingBytes.addAndGet(-blob.size): Unit
+      written.isRight
+
+  private val closed = writer.ended.transformWith:
+    case Success(_)      => closing.future.map(_ => finish())
+    case Failure(reason) =>
+      failed.trySuccess(RecordError.WriteFailed(file.path, reason.toString)): Unit
+      Future.successful(finish())
+
+  private def finish(): Either[RecordError, Written] =
+    for last <- ending.get do
+      file.end(last).left.foreach(failed.trySuccess)
+      rows.put(Seq(last))
+    rows.close()
+    val written = file.close()
+    written.left.foreach(failed.trySuccess)
+    failed.future.value.fold(written)(reason => Left(reason.get))
 
   def offer(record: Recordable): Unit = record match
     case last: Ending                 => ending.set(Some(last))
@@ -96,37 +122,9 @@ object DuckDbRecorder:
     Future(RecordingFile.create(file, heading)).map(_.map: made =>
       val rows = Numbered(beside)
       rows.put(heading.records)
-      start(made, capacity, rows, threads))
+      DuckDbRecorder(made, capacity, rows, threads))
 
   private val usual: ThreadFactory = Thread.ofPlatform().daemon().name("skein-record-", 1).factory()
-
-  private def start(file: RecordingFile, capacity: Int, rows: Numbered, threads: ThreadFactory)(using
-      ExecutionContext
-  ): DuckDbRecorder =
-    val failed       = Promise[RecordError]()
-    val ending       = AtomicReference(Option.empty[Ending])
-    val closing      = Promise[Unit]()
-    val waitingBytes = AtomicLong()
-    val writer       = RecordWriter(capacity, commitInterval.toNanos, batchSize, threads): batch =>
-      val written = file.write(batch)
-      written.left.foreach(failed.trySuccess)
-      if written.isRight then rows.put(batch)
-      for blob <- batch.iterator.flatMap(Record.blobOf) do waitingBytes.addAndGet(-blob.size): Unit
-      written.isRight
-    def finish(): Either[RecordError, Written] =
-      for last <- ending.get do
-        file.end(last).left.foreach(failed.trySuccess)
-        rows.put(Seq(last))
-      rows.close()
-      val written = file.close()
-      written.left.foreach(failed.trySuccess)
-      failed.future.value.fold(written)(reason => Left(reason.get))
-    val closed = writer.ended.transformWith:
-      case Success(_)      => closing.future.map(_ => finish())
-      case Failure(reason) =>
-        failed.trySuccess(RecordError.WriteFailed(file.path, reason.toString)): Unit
-        Future.successful(finish())
-    DuckDbRecorder(capacity, writer, waitingBytes, failed, ending, closing, closed)
 
   /** Numbers rows as the file does, for the other sinks. */
   private final class Numbered(beside: Vector[RowSink]):

@@ -1,9 +1,7 @@
 package skein.record
 
-import java.io.IOException
 import java.nio.file.{Files, Path}
 import java.sql.Connection
-import scala.util.Using
 
 /** Exports recordings for other programs. */
 object Export:
@@ -15,7 +13,11 @@ object Export:
     */
   def parquet(recording: Path, directory: Path): Either[RecordError, Vector[Path]] =
     for
-      _     <- createDirectory(recording, directory)
+      _ <- FileReason.attempt(RecordError.ExportFailed(
+        recording,
+        directory,
+        _
+      ))(Files.createDirectories(directory))
       files <- RecordingReader.withRecording(recording): connection =>
         RecordingFile.attempt(RecordError.ExportFailed(recording, directory, _)):
           Table.all.filterNot(_.isMissing(connection)).map(table =>
@@ -23,16 +25,7 @@ object Export:
           )
     yield files
 
-  private def createDirectory(recording: Path, directory: Path): Either[RecordError, Unit] =
-    try
-      val _ = Files.createDirectories(directory)
-      Right(())
-    catch
-      case failed: IOException => Left(RecordError.ExportFailed(recording, directory, FileReason.of(failed)))
-
   private def write(table: Table[?], file: Path, connection: Connection): Path =
-    val quoted = "'" + file.toString.replace("'", "''") + "'"
-    Using.resource(connection.createStatement()): statement =>
-      val _ =
-        statement.execute(s"COPY (SELECT * FROM ${table.name} ORDER BY row) TO $quoted (FORMAT parquet)")
+    val to = Sql.quoted(file.toString)
+    Sql.execute(connection, s"COPY (SELECT * FROM ${table.name} ORDER BY row) TO $to (FORMAT parquet)")
     file

@@ -6,6 +6,11 @@ import java.util.Locale
 
 /** Converts an exception of a file to a reason that a person understands. */
 private[skein] object FileReason:
+  /** Runs an action on files; its exception becomes an error with the reason. */
+  def attempt[A, E](error: String => E)(action: => A): Either[E, A] =
+    try Right(action)
+    catch case failed: IOException => Left(error(of(failed)))
+
   /** The reason without names of Java's classes. */
   def of(failed: IOException): String = failed match
     case failed: FileSystemException =>

@@ -91,6 +91,10 @@ object FlightTopics:
         binary(FoxgloveViews.imageOf(sensor), form.imageSchema)
       )
 
+  /** The time of the first row that states one; without any, the beginning of time. */
+  def startOf(rows: Vector[(Long, Record)]): Instant =
+    rows.iterator.flatMap((_, record) => knownAt(record)).nextOption().getOrElse(Instant.Epoch)
+
   /** The time at which the controller knew the record's fact; None if the record does not state it. */
   def knownAt(record: Record): Option[Instant] = record match
     case reading: ReadingRow      => Some(reading.state.receivedAt)

@@ -32,10 +32,8 @@ private[record] final class FoxgloveViews(
   /** The messages before the first row. */
   def opening(at: Instant): Vector[View] =
     opened = at
-    def world    = transform(at, "world", "world_ned", Vector3(0, 0, 0), NedInWorld)
-    val standing = Option.when(stands.objects.nonEmpty)(View.text(Standing)(scene(obstacles(at))))
-    Vector(View.text(FixedFrames)(Json.obj("transforms" -> Json.array(Vector(world))))) ++
-      vehicles.map(drawn) ++ standing
+    transform(FixedFrames, at, "world", "world_ned", Vector3(0, 0, 0), NedInWorld) +:
+      (vehicles.map(drawn) ++ Option.when(stands.objects.nonEmpty)(obstacles(at)))
 
   def of(record: Record): Vector[View] = record match
     case reading: ReadingRow =>
@@ -46,11 +44,9 @@ private[record] final class FoxgloveViews(
       val state = reading.state.value
       val name  = reading.vehicle
       downs(name) = state.positionNed.z
-      def moved  = transform(at, "world_ned", name, state.positionNed, state.orientation)
-      def placed = pose(at, state.positionNed, state.orientation)
       Vector(
-        View.text(Frames)(Json.obj("transforms" -> Json.array(Vector(moved)))),
-        View.text(poseOf(name))(placed)
+        transform(Frames, at, "world_ned", name, state.positionNed, state.orientation),
+        View.text(poseOf(name))(pose(at, state.positionNed, state.orientation))
       ) ++ trail(name, at, state.positionNed)
     case decision: DecisionRow =>
       decision.trueAge.foreach(age => offset = Some(age.clockOffset))
@@ -60,7 +56,7 @@ private[record] final class FoxgloveViews(
         val at   = expected.actsAt + offset.getOrElse(Span.Zero)
         val from = decision.own.state.value.positionNed
         val off  = errors.get(name)
-        View.text(predictionOf(name))(scene(carried(name, at, from, expected.ownPositionNed, off)))
+        carried(name, at, from, expected.ownPositionNed, off)
     case event: Event =>
       def log = Json.obj(
         "timestamp" -> time(event.at),
@@ -79,13 +75,8 @@ private[record] final class FoxgloveViews(
         val name   = planned.vehicle
         val down   = downs.getOrElse(name, 0.0)
         val places = course.north.zip(course.east).map((north, east) => Vector3(north, east, down))
-        def drawn  = entity(
-          decided.getOrElse(name, Instant.Epoch),
-          "world_ned",
-          s"$name plan",
-          lines = Vector(line(name, places, thickness = 3))
-        )
-        View.text(planOf(name))(scene(drawn))
+        val at     = decided.getOrElse(name, Instant.Epoch)
+        scene(planOf(name), at, s"$name plan", lines = Vector(line(name, places, thickness = 3)))
     case image: CameraImage => seen(image)
     case cloud: Cloud       =>
       val at = cloud.validAt + aheadOf(cloud.validAt, cloud.receivedAt)
@@ -112,15 +103,20 @@ private[record] final class FoxgloveViews(
     val lens   = (image.width, image.height, image.fov)
     val isNew  = !lenses.get(sensor).contains(lens)
     lenses(sensor) = lens
-    def moved =
-      transform(at, "world_ned", frame, image.positionNed, times(image.orientation, OpticalInCamera))
     val calibrated =
       image.fov.filter(_ => isNew).map(fov =>
         View.text(calibrationOf(sensor))(calibration(at, frame, image, fov))
       )
     Vector(
       View(imageOf(sensor), () => form.image(image, at, frame)),
-      View.text(Frames)(Json.obj("transforms" -> Json.array(Vector(moved))))
+      transform(
+        Frames,
+        at,
+        "world_ned",
+        frame,
+        image.positionNed,
+        times(image.orientation, OpticalInCamera)
+      )
     ) ++ calibrated
 
   /** The calibration of a pinhole without distortion, whose axis passes through the image's middle. */
@@ -140,11 +136,11 @@ private[record] final class FoxgloveViews(
       "P"                -> numbers(focal, 0, cx, 0, 0, focal, cy, 0, 0, 0, 1, 0)
     )
 
-  private def obstacles(at: Instant): String =
+  private def obstacles(at: Instant): View =
     val parts = stands.objects.flatMap(thing => thing.parts.map(part => (part, thing.place.outside(part.at))))
-    entity(
+    scene(
+      Standing,
       at,
-      "world_ned",
       "scene",
       cubes = parts.collect:
         case (SceneObject.Part(Shape.Box(half), _, rgb), place)    => block(place, half * 2, painted(rgb))
@@ -178,24 +174,19 @@ private[record] final class FoxgloveViews(
       trail.shownAt = at
       trail.points.dropWhileInPlace((passed, _) => at.since(passed) > TrailLength): Unit
       val points = trail.points.toVector.map(_._2)
-      def drawn  = entity(at, "world_ned", s"$name trail", lines = Vector(line(name, points, thickness = 2)))
-      View.text(trailOf(name))(scene(drawn))
+      scene(trailOf(name), at, s"$name trail", lines = Vector(line(name, points, thickness = 2)))
 
   /** A line from a vehicle's reading to its predicted position when the command acts, with a sphere around
     * that position, of the size of the newest prediction's error.
     */
-  private def carried(name: String, at: Instant, from: Vector3, to: Vector3, off: Option[Metres]) =
-    val there = block(Placement(to), Vector3(0.5, 0.5, 0.5), colours(name))
-    val way   = line(name, Vector(from, to), thickness = 4)
-    val wide  = off.map(error => block(Placement(to), Vector3(2, 2, 2) * error.value, Doubt))
-    entity(
-      at,
-      "world_ned",
-      s"$name prediction",
-      cubes = Vector(there),
-      spheres = wide.toVector,
-      lines = Vector(way)
-    )
+  private def carried(name: String, at: Instant, from: Vector3, to: Vector3, off: Option[Metres]) = scene(
+    predictionOf(name),
+    at,
+    s"$name prediction",
+    cubes = Vector(block(Placement(to), Vector3(0.5, 0.5, 0.5), colours(name))),
+    spheres = off.toVector.map(error => block(Placement(to), Vector3(2, 2, 2) * error.value, Doubt)),
+    lines = Vector(line(name, Vector(from, to), thickness = 4))
+  )
 
   private def line(name: String, points: Vector[Vector3], thickness: Int) = Json.obj(
     "type"            -> LineStrip,
@@ -209,8 +200,7 @@ private[record] final class FoxgloveViews(
   )
 
   private def drawn(name: String): View =
-    def all = entity(opened, name, name, cubes = Vector(body(name)), texts = Vector(label(name)))
-    View.text(bodyOf(name))(scene(all))
+    scene(bodyOf(name), opened, name, frame = name, cubes = Vector(body(name)), texts = Vector(label(name)))
 
   /** A vehicle's body; a car's origin is on the ground. */
   private def body(name: String) =
@@ -325,44 +315,48 @@ private[record] object FoxgloveViews:
   )
 
   private def transform(
+      topic: String,
       at: Instant,
       parent: String,
       child: String,
       position: Vector3,
       orientation: Quaternion
-  ) =
-    Json.obj(
+  ) = View.text(topic):
+    val one = Json.obj(
       "timestamp"       -> time(at),
       "parent_frame_id" -> Json.string(parent),
       "child_frame_id"  -> Json.string(child),
       "translation"     -> xyz(position),
       "rotation"        -> wxyz(orientation)
     )
+    Json.obj("transforms" -> Json.array(Vector(one)))
 
-  private def scene(entity: String) = Json.obj("deletions" -> "[]", "entities" -> Json.array(Vector(entity)))
-
-  private def entity(
+  /** One entity, whose parts are drawn when somebody looks. */
+  private def scene(
+      topic: String,
       at: Instant,
-      frame: String,
       id: String,
-      cubes: Vector[String] = Vector.empty,
-      spheres: Vector[String] = Vector.empty,
-      cylinders: Vector[String] = Vector.empty,
-      lines: Vector[String] = Vector.empty,
-      texts: Vector[String] = Vector.empty
-  ) = Json.obj(
-    "timestamp"    -> time(at),
-    "frame_id"     -> Json.string(frame),
-    "id"           -> Json.string(id),
-    "lifetime"     -> seconds(0),
-    "frame_locked" -> "true",
-    "metadata"     -> "[]",
-    "arrows"       -> "[]",
-    "cubes"        -> Json.array(cubes),
-    "spheres"      -> Json.array(spheres),
-    "cylinders"    -> Json.array(cylinders),
-    "lines"        -> Json.array(lines),
-    "triangles"    -> "[]",
-    "texts"        -> Json.array(texts),
-    "models"       -> "[]"
-  )
+      frame: String = "world_ned",
+      cubes: => Vector[String] = Vector.empty,
+      spheres: => Vector[String] = Vector.empty,
+      cylinders: => Vector[String] = Vector.empty,
+      lines: => Vector[String] = Vector.empty,
+      texts: => Vector[String] = Vector.empty
+  ) = View.text(topic):
+    val entity = Json.obj(
+      "timestamp"    -> time(at),
+      "frame_id"     -> Json.string(frame),
+      "id"           -> Json.string(id),
+      "lifetime"     -> seconds(0),
+      "frame_locked" -> "true",
+      "metadata"     -> "[]",
+      "arrows"       -> "[]",
+      "cubes"        -> Json.array(cubes),
+      "spheres"      -> Json.array(spheres),
+      "cylinders"    -> Json.array(cylinders),
+      "lines"        -> Json.array(lines),
+      "triangles"    -> "[]",
+      "texts"        -> Json.array(texts),
+      "models"       -> "[]"
+    )
+    Json.obj("deletions" -> "[]", "entities" -> Json.array(Vector(entity)))

@@ -1,12 +1,10 @@
 package skein.record
 
-import java.io.IOException
 import java.nio.file.{Files, Path, StandardCopyOption}
 import java.util.Base64
 import org.duckdb.DuckDBConnection
 import scala.collection.immutable.VectorMap
 import scala.collection.mutable
-import scala.util.Using
 import skein.mcap.{Bytes, McapWriter, Parsed, Record as McapRecord, WriterOptions}
 import skein.mcap.file.McapFile
 import skein.scene.Scene
@@ -39,7 +37,7 @@ object McapRecording:
   ): Either[RecordError, Unit] =
     for
       rows <- RecordingReader.records(recording)
-      _    <- attempt(RecordError.ExportFailed(recording, file, _)):
+      _    <- FileReason.attempt(RecordError.ExportFailed(recording, file, _)):
         if Files.exists(file) && !Files.isRegularFile(file) then
           McapFile.write(file, options)(write(rows, scene, _))
         else
@@ -57,12 +55,9 @@ object McapRecording:
       scene: Map[String, String] => Scene,
       mcap: McapWriter
   ): Unit =
-    val names = rows.collect { case (_, vehicle: VehicleRow) => vehicle.name }
-    val from  =
-      rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).nextOption().getOrElse(
-        Instant.ofNanos(0)
-      )
-    val flight = Rows(mcap, names, from, Some(firstOffset(rows.map(_._2))), sceneOf(rows, scene))
+    val names  = rows.collect { case (_, vehicle: VehicleRow) => vehicle.name }
+    val offset = Some(firstOffset(rows.map(_._2)))
+    val flight = Rows(mcap, names, FlightTopics.startOf(rows), offset, sceneOf(rows, scene))
     rows.foreach(flight.put)
 
   /** The scene of a flight that was recorded in the built-in simulator; an empty scene for other simulators.
@@ -144,7 +139,7 @@ object McapRecording:
         imported(file, recording)
 
   private def imported(file: Path, recording: Path): Either[RecordError, Unit] =
-    attempt(RecordError.CannotCreate(recording, _)):
+    FileReason.attempt(RecordError.CannotCreate(recording, _)):
       WorkFolder.beside(recording): folder =>
         val made = folder.resolve("recording.duckdb")
         for
@@ -252,19 +247,14 @@ object McapRecording:
       else if column.nullable && rows.format < RecordingFormat.version then
         column.older.fold(column.name)(older => s"coalesce(${column.name}, $older)")
       else column.name
-    val quoted  = "'" + rows.file.toString.replace("'", "''") + "'"
     val longest = rows.longest.max(JsonLine)
-    Using.resource(connection.createStatement()): statement =>
-      val _ = statement.execute(
-        s"INSERT INTO ${table.name} SELECT ${values.mkString(", ")} FROM " +
-          // A folder named `a=b` would be a column.
-          s"read_json($quoted, format = 'newline_delimited', hive_partitioning = false, " +
-          s"columns = $types, maximum_object_size = $longest)"
-      )
+    Sql.execute(
+      connection,
+      s"INSERT INTO ${table.name} SELECT ${values.mkString(", ")} FROM " +
+        // A folder named `a=b` would be a column.
+        s"read_json(${Sql.quoted(rows.file.toString)}, format = 'newline_delimited', " +
+        s"hive_partitioning = false, columns = $types, maximum_object_size = $longest)"
+    )
 
   /** DuckDB's own limit on the length of a line, bytes. */
   private val JsonLine = 16 * 1024 * 1024
-
-  private def attempt[A](error: String => RecordError)(action: => A): Either[RecordError, A] =
-    try Right(action)
-    catch case failed: IOException => Left(error(FileReason.of(failed)))

@@ -66,5 +66,5 @@ object McapRowSink:
   ): Either[RecordError, McapRowSink] =
     if Files.exists(file) then Left(RecordError.AlreadyExists(file))
     else
-      try Right(McapRowSink(FileChannel.open(file, CREATE, TRUNCATE_EXISTING, WRITE), file, heading, scene))
-      catch case error: IOException => Left(RecordError.CannotCreate(file, FileReason.of(error)))
+      FileReason.attempt(RecordError.CannotCreate(file, _)):
+        McapRowSink(FileChannel.open(file, CREATE, TRUNCATE_EXISTING, WRITE), file, heading, scene)

@@ -15,5 +15,4 @@ final class ObservedRecorder(
     if keeps(record) then recorder.offer(record)
     observer(record)
 
-  def failure: Future[RecordError]                  = recorder.failure
-  def close(): Future[Either[RecordError, Written]] = recorder.close()
+  export recorder.{close, failure}

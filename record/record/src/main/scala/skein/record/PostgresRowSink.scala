@@ -81,7 +81,7 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
       val insert  = inserts.getOrElseUpdate(table.name, connection.prepareStatement(insertOf(table)))
       for (number, record) <- some do
         insert.setLong(1, number)
-        columns.append(record, StatementRow(insert, connection, columns.definitions))
+        columns.append(record, StatementRow(insert, connection))
         insert.addBatch()
       insert.executeBatch(): Unit
     connection.commit()
@@ -122,13 +122,12 @@ object PostgresRowSink:
 
   private def make(connection: Connection, schema: String, target: PostgresAddress): PostgresRowSink =
     connection.setAutoCommit(false)
-    Using.resource(connection.createStatement()): statement =>
-      statement.execute(s"""CREATE SCHEMA "$schema"""")
-      statement.execute(s"""CREATE TABLE "$schema".format (version INTEGER NOT NULL)""")
-      statement.execute(s"""INSERT INTO "$schema".format VALUES (${RecordingFormat.version})""")
-      for table <- Table.all do
-        val defined = table.numbered.map(column => column.copy(sqlType = typeOf(column.sqlType)).sql)
-        statement.execute(s"""CREATE TABLE "$schema".${table.name} (${defined.mkString(", ")})"""): Unit
+    Sql.execute(connection, s"""CREATE SCHEMA "$schema"""")
+    Sql.execute(connection, s"""CREATE TABLE "$schema".format (version INTEGER NOT NULL)""")
+    Sql.execute(connection, s"""INSERT INTO "$schema".format VALUES (${RecordingFormat.version})""")
+    for table <- Table.all do
+      val defined = table.numbered.map(column => column.copy(sqlType = typeOf(column.sqlType)).sql)
+      Sql.execute(connection, s"""CREATE TABLE "$schema".${table.name} (${defined.mkString(", ")})""")
     connection.commit()
     PostgresRowSink(connection, schema, target)
 
@@ -142,8 +141,7 @@ object PostgresRowSink:
         Left(s"Postgres at ${target.shown}: ${error.getMessage.linesIterator.next()}")
 
 /** Sets the values of one row in the order of the columns; the first is the row's number. */
-private final class StatementRow(insert: PreparedStatement, connection: Connection, columns: Vector[Column])
-    extends RowWriter:
+private final class StatementRow(insert: PreparedStatement, connection: Connection) extends RowWriter:
   private var place = 1
 
   private def next: Int =
@@ -161,17 +159,7 @@ private final class StatementRow(insert: PreparedStatement, connection: Connecti
   def texts(values: Vector[String]): Unit   = array("text", values)
   def blob(value: Blob): Unit               = insert.setBytes(next, value.packed)
 
-  def nothing(): Unit =
-    val at = next
-    insert.setNull(
-      at,
-      columns(at - 2).sqlType match
-        case "VARCHAR"                   => Types.VARCHAR
-        case "BIGINT"                    => Types.BIGINT
-        case "DOUBLE"                    => Types.DOUBLE
-        case kind if kind.endsWith("[]") => Types.ARRAY
-        case other                       => throw IllegalArgumentException(s"column of type $other")
-    )
+  def nothing(): Unit = insert.setNull(next, Types.NULL)
 
 /** The address of a Postgres database.
   *

@@ -55,7 +55,7 @@ private[record] final class RecordingFile private (val path: Path, connection: D
         execute("CHECKPOINT")
       written
 
-  private def execute(sql: String): Unit = RecordingFile.execute(connection, sql)
+  private def execute(sql: String): Unit = Sql.execute(connection, sql)
 
 private[record] object RecordingFile:
 
@@ -69,9 +69,9 @@ private[record] object RecordingFile:
         try
           createTables(connection)
           // A kill of the process loses nothing that the operating system has: no commit waits for the disk.
-          execute(connection, "SET fsync_mode = 'NONE'")
+          Sql.execute(connection, "SET fsync_mode = 'NONE'")
           // Appending leaves nothing to optimise, and each batch would be planned again.
-          execute(connection, "SET enable_optimizer = false")
+          Sql.execute(connection, "SET enable_optimizer = false")
           RecordingFile(file, connection)
         catch
           case failure: SQLException =>
@@ -101,7 +101,7 @@ private[record] object RecordingFile:
       Using.resource(connect(file, readOnly = false)): connection =>
         createTables(connection)
         rows(connection)
-        execute(connection, "CHECKPOINT")
+        Sql.execute(connection, "CHECKPOINT")
 
   private val Unnameable =
     "expected a path without ';', '?' or '\\', which DuckDB takes for its end, for options or for '/'"
@@ -109,9 +109,9 @@ private[record] object RecordingFile:
   private def isUnnameable(file: Path) = file.toAbsolutePath.toString.exists(";?\\".contains(_))
 
   private def createTables(connection: DuckDBConnection): Unit =
-    execute(connection, "CREATE TABLE format (version INTEGER NOT NULL)")
-    execute(connection, s"INSERT INTO format VALUES (${RecordingFormat.version})")
-    Table.all.foreach(table => execute(connection, table.create))
+    Sql.execute(connection, "CREATE TABLE format (version INTEGER NOT NULL)")
+    Sql.execute(connection, s"INSERT INTO format VALUES (${RecordingFormat.version})")
+    Table.all.foreach(table => Sql.execute(connection, table.create))
 
   /** Opens a connection to this file only, with one thread, and without extensions from the network. A new
     * file can be read by every client since DuckDB 1.0.
@@ -144,10 +144,6 @@ private[record] object RecordingFile:
       failure.getStackTrace.exists(_.getClassName.startsWith(Zstandard))
 
   private val Zstandard = "com.github.luben.zstd"
-
-  private def execute(connection: DuckDBConnection, sql: String): Unit =
-    Using.resource(connection.createStatement()): statement =>
-      val _ = statement.execute(sql)
 
   private def firstLine(message: String): String =
     message.linesIterator.nextOption().getOrElse("no reason given")

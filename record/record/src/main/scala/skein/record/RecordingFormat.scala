@@ -1,7 +1,6 @@
 package skein.record
 
 import java.sql.Connection
-import scala.util.Using
 
 /** The versions of recordings' tables. */
 object RecordingFormat:
@@ -13,7 +12,4 @@ object RecordingFormat:
   val oldest = 2
 
   private[record] def of(connection: Connection): Int =
-    Using.resource(connection.createStatement()): statement =>
-      Using.resource(statement.executeQuery("SELECT max(version) FROM format")): rows =>
-        val _ = rows.next()
-        rows.getInt(1)
+    Sql.rows(connection, "SELECT max(version) FROM format")(_.getInt(1)).head

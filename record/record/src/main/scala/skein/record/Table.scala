@@ -49,15 +49,10 @@ private[record] final case class Table[A <: Record](
         case _                       => column.older.getOrElse(column.name)
     if isMissing(present, connection) then Vector.empty
     else
-      Using.resource(connection.createStatement()): statement =>
-        Using.resource(statement.executeQuery(
-          s"SELECT row, ${cells.mkString(", ")} FROM $name ORDER BY row"
-        )): rows =>
-          Vector.unfold(rows): rows =>
-            Option.when(rows.next()):
-              val cells = Cells(rows)
-              val row   = cells.next(_.getLong(_))
-              ((row, readRow(row, cells)), rows)
+      Sql.rows(connection, s"SELECT row, ${cells.mkString(", ")} FROM $name ORDER BY row"): rows =>
+        val cells = Cells(rows)
+        val row   = cells.next(_.getLong(_))
+        (row, readRow(row, cells))
 
   private def readRow(row: Long, cells: Cells): A =
     try columns.read(cells)
@@ -71,14 +66,8 @@ private[record] final case class Table[A <: Record](
 
   /** Names and types of the table's columns in a file. */
   private def columnsIn(connection: Connection): Map[String, String] =
-    Using.resource(connection.createStatement()): statement =>
-      Using.resource(statement.executeQuery(
-        s"SELECT column_name, data_type FROM information_schema.columns WHERE table_name = '$name'"
-      ))(rows =>
-        Iterator.unfold(rows)(rows =>
-          Option.when(rows.next())((rows.getString(1) -> rows.getString(2), rows))
-        ).toMap
-      )
+    val query = s"SELECT column_name, data_type FROM information_schema.columns WHERE table_name = '$name'"
+    Sql.rows(connection, query)(rows => rows.getString(1) -> rows.getString(2)).toMap
 
 private[record] object Table:
   // Columns of a later format than their table.

@@ -20,13 +20,20 @@ object HttpPort:
     *
     * @param port 0 for any that is free
     * @param access the access rules for the port on which it listens
-    * @param refused called with each request that `access` refuses
     * @param answer must not block; an answer that is not an error counts as activity
     * @return fails if it cannot listen
     */
-  def bind(port: Int, seats: Seats, access: Int => Access, refused: () => Unit)(
+  def bind(port: Int, seats: Seats, access: Int => Access)(
       answer: (HttpRequest, Guest) => HttpResponse
   )(using ActorSystem): Future[Http.ServerBinding] =
+    def served(request: HttpRequest, guest: Guest, who: Access): HttpResponse =
+      val response = who.refusal(request.headers.map(header => (header.lowercaseName, header.value))) match
+        case None      => answer(request, guest)
+        case Some(why) =>
+          request.discardEntityBytes()
+          HttpResponse(StatusCodes.Forbidden, entity = why)
+      if response.status.isSuccess then guest.spoke()
+      if response.status == StatusCodes.SwitchingProtocols then response else response.mapHeaders(guards ++ _)
     Http()
       .newServerAt("127.0.0.1", port)
       .connectionSource()
@@ -38,13 +45,7 @@ object HttpPort:
           case Some(seat) =>
             val guest = Guest(seat, switch)
             val who   = access(connection.localAddress.getPort)
-            connection.handleWith(guest.during(Flow[HttpRequest].map(served(
-              _,
-              guest,
-              who,
-              refused,
-              answer
-            )))): Unit)
+            connection.handleWith(guest.during(Flow[HttpRequest].map(served(_, guest, who)))): Unit)
       .run()
 
   /** One connection, with its seat at the port. */
@@ -65,22 +66,6 @@ object HttpPort:
             ExecutionContext.parasitic
           )
         )
-
-  private def served(
-      request: HttpRequest,
-      guest: Guest,
-      access: Access,
-      refused: () => Unit,
-      answer: (HttpRequest, Guest) => HttpResponse
-  )(using ActorSystem): HttpResponse =
-    val response = access.refusal(request.headers.map(header => (header.lowercaseName, header.value))) match
-      case None      => answer(request, guest)
-      case Some(why) =>
-        refused()
-        request.discardEntityBytes()
-        HttpResponse(StatusCodes.Forbidden, entity = why)
-    if response.status.isSuccess then guest.spoke()
-    if response.status == StatusCodes.SwitchingProtocols then response else response.mapHeaders(guards ++ _)
 
   private val guards = Vector(
     "Content-Security-Policy" -> (

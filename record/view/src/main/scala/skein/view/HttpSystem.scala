@@ -28,7 +28,7 @@ object HttpSystem:
       |}
       |pekko.actor.internal-dispatcher = pekko.actor.default-dispatcher
       |pekko.coordinated-shutdown.run-by-jvm-shutdown-hook = off
-      |# Nobody who connects can fill a terminal: what is turned away is counted.
+      |# Nobody who connects can fill a terminal.
       |pekko.loglevel = OFF
       |pekko.stdout-loglevel = OFF
       |""".stripMargin)

@@ -1,5 +1,6 @@
 package skein.view
 
+import org.apache.pekko.http.scaladsl.model.ws.{BinaryMessage, TextMessage}
 import skein.record.{
   Ending,
   FlightMessage,
@@ -37,8 +38,10 @@ final class LiveShow(
     sensors: Vector[ImagingSensor] = Vector.empty
 ) extends Show(
       heading.flight.id,
-      LiveShow.topics(heading, sensors) ++ (LiveShow.clock +: gauges.map(_.topic)),
-      limits
+      heading.vehicles.map(_.name).toVector,
+      sensors,
+      limits,
+      LiveShow.clock +: gauges.map(_.topic)
     ):
   private val topics = FlightTopics(
     heading.vehicles.map(_.name).toVector,
@@ -55,10 +58,6 @@ final class LiveShow(
   topics.opening.foreach(publish)
   heading.records.foreach(show)
 
-  def recorded: Option[(Instant, Instant)] = None
-
-  protected def greet(viewer: Viewer, now: Instant): Unit = ()
-
   def turn(now: Instant): Unit = synchronized:
     if ended.isEmpty then
       Iterator.continually(feed.poll()).takeWhile(_.isDefined).take(LiveShow.MostAtOnce).flatten.foreach(show)
@@ -71,9 +70,12 @@ final class LiveShow(
         else
           gauge.json().foreach(json => publish(FlightMessage.json(gauge.topic.name, "", now, now)(json)))
           now
-    notice("time", ServerBytes(Protocol.timeIs(ended.getOrElse(now))))
+    notice("time", BinaryMessage.Strict(Protocol.timeIs(ended.getOrElse(now))))
     if feed.lost > 0 then
-      notice("feed", ServerText(Protocol.warning("feed", s"${feed.lost} records were too many to be shown")))
+      notice(
+        "feed",
+        TextMessage.Strict(Protocol.warning("feed", s"${feed.lost} records were too many to be shown"))
+      )
 
   def control(playback: ClientMessage.Playback, now: Instant): Either[String, Unit] =
     Left("a flight that flies cannot be played")
@@ -96,12 +98,6 @@ final class LiveShow(
     number += 1
 
 object LiveShow:
-  private def topics(heading: RecordingHeader, sensors: Vector[ImagingSensor]) =
-    FlightTopics.all(heading.vehicles.map(_.name).toVector) ++ sensors.flatMap(FlightTopics.of(
-      _,
-      ImagePreviews
-    ))
-
   /** The topic of its start time: as text, since JSON numbers are not exact to the nanosecond. */
   private val clock = Topic(
     "/skein/clock",

@@ -1,6 +1,7 @@
 package skein.view
 
-import skein.record.{FlightRow, FlightTopics, McapRecording, Record, ImagingSensor, VehicleRow}
+import org.apache.pekko.http.scaladsl.model.ws.BinaryMessage
+import skein.record.{FlightRow, FlightTopics, ImagingSensor, McapRecording, Record, VehicleRow}
 import skein.scene.Scene
 import skein.units.Instant
 
@@ -15,15 +16,14 @@ final class RecordedShow(
     rows: Vector[(Long, Record)],
     limits: ViewerLimits = ViewerLimits.OfRecording,
     scene: Scene = Scene.Empty
-) extends Show(id, RecordedShow.topics(vehicles, rows), limits):
+) extends Show(id, vehicles, rows.flatMap((_, row) => ImagingSensor.of(row)).distinct, limits):
 
   /** The time at which each row was known: of a row without a time, that of the row before. */
   private val times: Array[Instant] =
-    val first = rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).nextOption().getOrElse(
-      Instant.ofNanos(0)
-    )
     rows.iterator
-      .scanLeft(first)((known, row) => FlightTopics.knownAt(row._2).getOrElse(known).max(known))
+      .scanLeft(FlightTopics.startOf(rows))((known, row) =>
+        FlightTopics.knownAt(row._2).getOrElse(known).max(known)
+      )
       .drop(1)
       .toArray
 
@@ -36,12 +36,12 @@ final class RecordedShow(
   begin()
   showUntil(start)
 
-  def recorded: Option[(Instant, Instant)] = Some((playback.start, playback.end))
+  override def recorded: Option[(Instant, Instant)] = Some((playback.start, playback.end))
 
   def turn(now: Instant): Unit = synchronized:
     val position = playback.position(now)
     showUntil(position)
-    notice("time", ServerBytes(Protocol.timeIs(position)))
+    notice("time", BinaryMessage.Strict(Protocol.timeIs(position)))
     val status = statusAt(now)
     if !told.contains(status) then tell(now, seeked = false, request = "")
 
@@ -57,8 +57,8 @@ final class RecordedShow(
     showUntil(position)
     Right(())
 
-  protected def greet(viewer: Viewer, now: Instant): Unit =
-    viewer.notice("playback", ServerBytes(Protocol.playbackState(state(now, seeked = false, ""))))
+  override protected def greet(viewer: Viewer, now: Instant): Unit =
+    viewer.notice("playback", BinaryMessage.Strict(Protocol.playbackState(state(now, seeked = false, ""))))
 
   private def begin(): Unit =
     topics = begun
@@ -87,16 +87,9 @@ final class RecordedShow(
     told = Some(statusAt(now))
     // Messages after a seek must not replace its notice: the seek is reported once.
     val key = if seeked then "jump" else "playback"
-    notice(key, ServerBytes(Protocol.playbackState(state(now, seeked, request))))
+    notice(key, BinaryMessage.Strict(Protocol.playbackState(state(now, seeked, request))))
 
 object RecordedShow:
-  private def topics(vehicles: Vector[String], rows: Vector[(Long, Record)]) =
-    FlightTopics.all(vehicles) ++
-      rows.flatMap((_, record) => ImagingSensor.of(record)).distinct.flatMap(FlightTopics.of(
-        _,
-        ImagePreviews
-      ))
-
   /** @param rows the rows of one recording, its heading first
     * @param scene makes the scene of the flight's world from the recording's parameters
     */

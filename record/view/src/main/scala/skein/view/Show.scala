@@ -1,10 +1,11 @@
 package skein.view
 
+import org.apache.pekko.http.scaladsl.model.ws.{Message, TextMessage}
 import org.apache.pekko.util.ByteString
 import scala.collection.immutable.VectorMap
 import scala.collection.mutable
 import scala.util.control.NonFatal
-import skein.record.{FlightMessage, Topic}
+import skein.record.{FlightMessage, FlightTopics, ImagingSensor, Topic}
 import skein.units.Instant
 
 /** One flight for viewers: its channels, the newest messages, and the viewers. The newest message of each
@@ -14,14 +15,19 @@ import skein.units.Instant
   * All methods may be called from any thread; they only wait for each other.
   *
   * @param id the flight's identifier
+  * @param sensors the sensors whose images and clouds are shown
+  * @param more topics beside those of every flight
   */
 abstract class Show private[view] (
     val id: String,
-    topics: Vector[Topic],
-    val limits: ViewerLimits
+    vehicles: Vector[String],
+    sensors: Vector[ImagingSensor],
+    val limits: ViewerLimits,
+    more: Vector[Topic] = Vector.empty
 ):
   val channels: Vector[FoxgloveChannel] =
-    topics.zipWithIndex.map((topic, at) => FoxgloveChannel(at + 1L, topic))
+    (FlightTopics.all(vehicles) ++ sensors.flatMap(FlightTopics.of(_, ImagePreviews)) ++ more).zipWithIndex
+      .map((topic, at) => FoxgloveChannel(at + 1L, topic))
 
   private val byTopic = channels.map(channel => channel.topic.name -> channel.id).toMap
   private val latest  = channels.filter(_.topic.newestOnly).map(_.id).toSet
@@ -33,7 +39,7 @@ abstract class Show private[view] (
     def at: Instant              = message.known
 
   /** Begin and end of a recording; None during a flight. */
-  def recorded: Option[(Instant, Instant)]
+  def recorded: Option[(Instant, Instant)] = None
 
   def controls: Map[FlightControl, () => Unit] = Map.empty
 
@@ -44,14 +50,15 @@ abstract class Show private[view] (
   private[view] final def attempt(now: Instant): Unit =
     try turn(now)
     catch
-      case NonFatal(error) => notice("failed", ServerText(Protocol.warning("failed", s"not shown: $error")))
+      case NonFatal(error) =>
+        notice("failed", TextMessage.Strict(Protocol.warning("failed", s"not shown: $error")))
 
   def control(playback: ClientMessage.Playback, now: Instant): Either[String, Unit]
 
   private[view] def entered(viewer: Viewer, now: Instant): Unit = synchronized:
     viewers += viewer
-    viewer.notice("info", ServerText(Protocol.serverInfo(s"Skein: $id", Show.session, recorded)))
-    viewer.notice("advertise", ServerText(Protocol.advertise(channels)))
+    viewer.notice("info", TextMessage.Strict(Protocol.serverInfo(s"Skein: $id", Show.session, recorded)))
+    viewer.notice("advertise", TextMessage.Strict(Protocol.advertise(channels)))
     greet(viewer, now)
 
   private[view] def left(viewer: Viewer): Unit = synchronized(viewers -= viewer): Unit
@@ -61,7 +68,7 @@ abstract class Show private[view] (
       viewer.offer(subscription, shown.at, shown.payload, latest(channel))
 
   /** Sends the first messages to a new viewer. */
-  protected def greet(viewer: Viewer, now: Instant): Unit
+  protected def greet(viewer: Viewer, now: Instant): Unit = ()
 
   protected def publish(message: FlightMessage): Unit = synchronized:
     for channel <- byTopic.get(message.topic) do
@@ -76,7 +83,7 @@ abstract class Show private[view] (
     newest.clear()
     viewers.foreach(_.empty())
 
-  protected def notice(key: String, message: ServerMessage): Unit = synchronized:
+  protected def notice(key: String, message: Message): Unit = synchronized:
     viewers.foreach(_.notice(key, message))
 
   def watching: Int = synchronized(viewers.size)

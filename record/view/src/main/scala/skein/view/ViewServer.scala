@@ -23,7 +23,6 @@ import skein.units.Clock
   */
 final class ViewServer private (
     binding: Http.ServerBinding,
-    val counts: RefusalCounts,
     turning: () => Unit,
     shows: Shows,
     clock: Clock
@@ -70,125 +69,105 @@ object ViewServer:
     given system: ActorSystem =
       HttpSystem("skein-view", threads, "websocket.periodic-keep-alive-max-idle = 20s")
     import system.dispatcher
-    val seats  = Seats(limits.connections, clock)
-    val counts = RefusalCounts(seats)
     HttpPort
-      .bind(port, seats, Access(_, origins = origins), () => counts.refusedRequest())(
-        answer(_, _, token, shows.all, clock, counts)
-      )
+      .bind(port, Seats(limits.connections, clock), Access(_, origins))(Answers(shows, clock, token)(_, _))
       .map: binding =>
         val turns = system.scheduler.scheduleWithFixedDelay(TurnEvery, TurnEvery)(() =>
           shows.all.foreach(_.attempt(clock.now()))
         )
-        ViewServer(binding, counts, () => turns.cancel(): Unit, shows, clock)
+        ViewServer(binding, () => turns.cancel(): Unit, shows, clock)
       .recoverWith { case error => system.terminate().transformWith(_ => Future.failed(error)) }
 
   private val TurnEvery = 25.millis
 
   private val LastMoment = 300.millis
 
-  private def answer(
-      request: HttpRequest,
-      guest: HttpPort.Guest,
-      token: Token,
-      shows: Vector[Show],
-      clock: Clock,
-      counts: RefusalCounts
-  )(using ActorSystem): HttpResponse =
-    def refused(status: StatusCode, why: String) =
-      counts.refusedRequest()
-      request.discardEntityBytes()
-      Page.answer(status, ContentTypes.`text/plain(UTF-8)`, why)
-    val path  = request.uri.path.toString
-    val place = segments(request.uri.path)
-    (request.attributes.get(AttributeKeys.webSocketUpgrade), request.method) match
-      case (Some(upgrade: WebSocketUpgrade), _) =>
-        shows.find(show => place == Vector("flights", show.id)).orElse(shows.headOption.filter(_ =>
-          path == "/"
-        )) match
-          case Some(show) => watch(upgrade, show, guest, clock, counts).getOrElse(
-              refused(
-                StatusCodes.BadRequest,
-                s"expected one of the subprotocols ${Protocol.Names.mkString(", ")}"
-              )
-            )
-          case None => refused(StatusCodes.NotFound, s"no flight at $path")
-      case (_, HttpMethods.GET) if path == "/flights" =>
-        Page.answer(
-          StatusCodes.OK,
-          ContentTypes.`application/json`,
-          ujson.Arr.from(shows.map(listed)).render()
-        )
-      case (_, HttpMethods.GET) =>
-        Page.file(path).getOrElse(refused(StatusCodes.NotFound, s"nothing at $path"))
-      case (_, HttpMethods.POST) =>
-        val said = request.headers.find(_.is("x-skein-token")).fold("")(_.value)
-        (wanted(place, shows), token.is(said)) match
-          case (_, false) =>
-            refused(StatusCodes.Unauthorized, "expected the token that the terminal shows")
-          case (Vector(), _) => refused(StatusCodes.NotFound, s"nothing to be done at $path")
-          case (acts, true)  =>
-            request.discardEntityBytes()
-            acts.foreach(_())
-            Page.answer(StatusCodes.OK, ContentTypes.`text/plain(UTF-8)`, "done")
-      case _ => refused(StatusCodes.MethodNotAllowed, "expected GET or POST")
-
-  private def listed(show: Show) =
-    ujson.Obj(
-      "id"       -> show.id,
-      "controls" -> ujson.Arr.from(FlightControl.values.filter(show.controls.contains).map(_.word))
-    )
-
-  /** A path's parts, decoded: a flight's name may contain `%` and `/`. */
-  private def segments(path: Uri.Path): Vector[String] = path match
-    case Uri.Path.Empty               => Vector.empty
-    case Uri.Path.Slash(rest)         => segments(rest)
-    case Uri.Path.Segment(part, rest) => part +: segments(rest)
-
-  private def wanted(place: Vector[String], shows: Vector[Show]): Vector[() => Unit] =
-    if place == Vector("hover") then shows.flatMap(_.controls.get(FlightControl.Pause))
-    else
-      for
-        show    <- shows
-        control <-
-          FlightControl.values.find(control => place == Vector("flights", show.id, control.word)).toVector
-        act <- show.controls.get(control)
-      yield act
-
-  private def watch(
-      upgrade: WebSocketUpgrade,
-      show: Show,
-      guest: HttpPort.Guest,
-      clock: Clock,
-      counts: RefusalCounts
-  )(using ActorSystem): Option[HttpResponse] =
-    Protocol.Names
-      .find(upgrade.requestedProtocols.contains)
-      .map: name =>
-        val stage = ViewerStage(show, clock, counts, () => guest.spoke())
-        upgrade.handleMessages(guest.during(whole(show.limits, counts).via(stage)), Some(name))
-
-  /** Joins the parts of messages; a message that is too long or too slow ends the connection. */
-  private def whole(limits: ViewerLimits, counts: RefusalCounts)(using
-      ActorSystem
-  ): Flow[Message, Message, ?] =
-    given ExecutionContext = ExecutionContext.parasitic
-    def gathered[A](parts: Source[A, ?], none: A)(size: A => Int, add: (A, A) => A)(message: A => Message) =
-      parts
-        .limitWeighted(limits.messageBytes)(size(_))
-        .completionTimeout(PartsWithin)
-        .runFold(none)(add)
-        .map(all => Some(message(all)))
-        .recover: _ =>
-          counts.refusedMessage()
-          None
-    Flow[Message]
-      .mapAsync(1):
-        case whole: (TextMessage.Strict | BinaryMessage.Strict) => Future.successful(Some(whole))
-        case text: TextMessage    => gathered(text.textStream, "")(_.length, _ + _)(TextMessage.Strict(_))
-        case bytes: BinaryMessage =>
-          gathered(bytes.dataStream, ByteString.empty)(_.length, _ ++ _)(BinaryMessage.Strict(_))
-      .takeWhile(_.isDefined)
-      .map(_.get)
-
   private val PartsWithin = 5.seconds
+
+  private final class Answers(all: Shows, clock: Clock, token: Token)(using ActorSystem):
+    def apply(request: HttpRequest, guest: HttpPort.Guest): HttpResponse =
+      val shows                                    = all.all
+      def refused(status: StatusCode, why: String) =
+        request.discardEntityBytes()
+        Page.answer(status, ContentTypes.`text/plain(UTF-8)`, why)
+      val path  = request.uri.path.toString
+      val place = segments(request.uri.path)
+      (request.attributes.get(AttributeKeys.webSocketUpgrade), request.method) match
+        case (Some(upgrade: WebSocketUpgrade), _) =>
+          shows.find(show => place == Vector("flights", show.id)).orElse(shows.headOption.filter(_ =>
+            path == "/"
+          )) match
+            case Some(show) => watch(upgrade, show, guest).getOrElse(
+                refused(
+                  StatusCodes.BadRequest,
+                  s"expected one of the subprotocols ${Protocol.Names.mkString(", ")}"
+                )
+              )
+            case None => refused(StatusCodes.NotFound, s"no flight at $path")
+        case (_, HttpMethods.GET) if path == "/flights" =>
+          Page.answer(
+            StatusCodes.OK,
+            ContentTypes.`application/json`,
+            ujson.Arr.from(shows.map(listed)).render()
+          )
+        case (_, HttpMethods.GET) =>
+          Page.file(path).getOrElse(refused(StatusCodes.NotFound, s"nothing at $path"))
+        case (_, HttpMethods.POST) =>
+          val said = request.headers.find(_.is("x-skein-token")).fold("")(_.value)
+          (wanted(place, shows), token.is(said)) match
+            case (_, false) =>
+              refused(StatusCodes.Unauthorized, "expected the token that the terminal shows")
+            case (Vector(), _) => refused(StatusCodes.NotFound, s"nothing to be done at $path")
+            case (acts, true)  =>
+              request.discardEntityBytes()
+              acts.foreach(_())
+              Page.answer(StatusCodes.OK, ContentTypes.`text/plain(UTF-8)`, "done")
+        case _ => refused(StatusCodes.MethodNotAllowed, "expected GET or POST")
+
+    private def listed(show: Show) =
+      ujson.Obj(
+        "id"       -> show.id,
+        "controls" -> ujson.Arr.from(FlightControl.values.filter(show.controls.contains).map(_.word))
+      )
+
+    /** A path's parts, decoded: a flight's name may contain `%` and `/`. */
+    private def segments(path: Uri.Path): Vector[String] = path match
+      case Uri.Path.Empty               => Vector.empty
+      case Uri.Path.Slash(rest)         => segments(rest)
+      case Uri.Path.Segment(part, rest) => part +: segments(rest)
+
+    private def wanted(place: Vector[String], shows: Vector[Show]): Vector[() => Unit] =
+      if place == Vector("hover") then shows.flatMap(_.controls.get(FlightControl.Pause))
+      else
+        for
+          show    <- shows
+          control <-
+            FlightControl.values.find(control => place == Vector("flights", show.id, control.word)).toVector
+          act <- show.controls.get(control)
+        yield act
+
+    private def watch(upgrade: WebSocketUpgrade, show: Show, guest: HttpPort.Guest): Option[HttpResponse] =
+      Protocol.Names
+        .find(upgrade.requestedProtocols.contains)
+        .map: name =>
+          val stage = ViewerStage(show, clock, () => guest.spoke())
+          upgrade.handleMessages(guest.during(whole(show.limits).via(stage)), Some(name))
+
+    /** Joins the parts of messages; a message that is too long or too slow ends the connection. */
+    private def whole(limits: ViewerLimits): Flow[Message, Message, ?] =
+      given ExecutionContext = ExecutionContext.parasitic
+      def gathered[A](parts: Source[A, ?], none: A)(size: A => Int, add: (A, A) => A)(message: A => Message) =
+        parts
+          .limitWeighted(limits.messageBytes)(size(_))
+          .completionTimeout(PartsWithin)
+          .runFold(none)(add)
+          .map(all => Some(message(all)))
+          .recover(_ => None)
+      Flow[Message]
+        .mapAsync(1):
+          case whole: (TextMessage.Strict | BinaryMessage.Strict) => Future.successful(Some(whole))
+          case text: TextMessage    => gathered(text.textStream, "")(_.length, _ + _)(TextMessage.Strict(_))
+          case bytes: BinaryMessage =>
+            gathered(bytes.dataStream, ByteString.empty)(_.length, _ ++ _)(BinaryMessage.Strict(_))
+        .takeWhile(_.isDefined)
+        .map(_.get)

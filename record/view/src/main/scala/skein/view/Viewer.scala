@@ -1,12 +1,8 @@
 package skein.view
 
+import org.apache.pekko.http.scaladsl.model.ws.{BinaryMessage, Message, TextMessage}
 import org.apache.pekko.util.ByteString
 import skein.units.Instant
-
-/** A WebSocket message to a viewer. */
-private[view] sealed trait ServerMessage
-private[view] final case class ServerText(text: String)       extends ServerMessage
-private[view] final case class ServerBytes(bytes: ByteString) extends ServerMessage
 
 /** A viewer: its subscriptions, and its waiting messages. From any thread.
   *
@@ -14,7 +10,7 @@ private[view] final case class ServerBytes(bytes: ByteString) extends ServerMess
   */
 private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake: () => Unit):
   @volatile private var subscriptions = Subscriptions.none(limits, channels)
-  private var outbox                  = Outbox.empty[ServerMessage](limits)
+  private var outbox                  = Outbox.empty[Message](limits)
   private var idle                    = false
   private var toldLost                = 0L
 
@@ -30,21 +26,21 @@ private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake
 
   /** @param newestOnly whether waiting messages of this subscription become useless */
   def offer(subscription: Long, logTime: Instant, payload: ByteString, newestOnly: Boolean = false): Unit =
-    val message = ServerBytes(Protocol.messageData(subscription, logTime, payload))
-    val most    = if newestOnly then 1 else limits.waiting
-    put(_.offered(subscription, message, message.bytes.length, most))
+    val data = Protocol.messageData(subscription, logTime, payload)
+    val most = if newestOnly then 1 else limits.waiting
+    put(_.offered(subscription, BinaryMessage.Strict(data), data.length, most))
 
   def empty(): Unit = synchronized { outbox = outbox.emptied }
 
-  def notice(key: String, message: ServerMessage): Unit = put(_.noticed(key, message))
+  def notice(key: String, message: Message): Unit = put(_.noticed(key, message))
 
   def lost: Long = synchronized(outbox.lost)
 
   /** The next message. Lost messages are reported before it. */
-  def take(): Option[ServerMessage] = synchronized:
+  def take(): Option[Message] = synchronized:
     if outbox.lost > toldLost then
       toldLost = outbox.lost
-      Some(ServerText(Protocol.warning(
+      Some(TextMessage.Strict(Protocol.warning(
         "lost",
         s"$toldLost older messages are not shown: more came than may wait for this viewer"
       )))
@@ -57,7 +53,7 @@ private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake
           idle = true
           None
 
-  private def put(change: Outbox[ServerMessage] => Outbox[ServerMessage]): Unit =
+  private def put(change: Outbox[Message] => Outbox[Message]): Unit =
     val wakes = synchronized:
       outbox = change(outbox)
       val was = idle

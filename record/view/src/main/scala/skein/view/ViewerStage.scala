@@ -13,7 +13,7 @@ import skein.units.Clock
   *
   * @param spoke called for each valid message
   */
-private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalCounts, spoke: () => Unit)
+private[view] final class ViewerStage(show: Show, clock: Clock, spoke: () => Unit)
     extends GraphStage[FlowShape[Message, Message]]:
   private val in  = Inlet[Message]("ViewerStage.in")
   private val out = Outlet[Message]("ViewerStage.out")
@@ -42,9 +42,7 @@ private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalC
         if refused > show.limits.refusals then completeStage() else pull(in)
 
       /** Invalid frames are the viewer's mistake, not a failure of the server. */
-      override def onUpstreamFailure(error: Throwable): Unit =
-        counts.refusedMessage()
-        completeStage()
+      override def onUpstreamFailure(error: Throwable): Unit = completeStage()
 
       def onPull(): Unit = send()
 
@@ -63,10 +61,7 @@ private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalC
 
       private def refuse(why: String): Unit =
         refused += 1
-        counts.refusedMessage()
-        viewer.notice("refused", ServerText(Protocol.warning("refused", why)))
+        viewer.notice("refused", TextMessage.Strict(Protocol.warning("refused", why)))
 
       private def send(): Unit = if isAvailable(out) then
-        viewer.take().foreach:
-          case ServerText(text)   => push(out, TextMessage.Strict(text))
-          case ServerBytes(bytes) => push(out, BinaryMessage.Strict(bytes))
+        viewer.take().foreach(push(out, _))

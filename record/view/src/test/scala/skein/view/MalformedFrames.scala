@@ -123,9 +123,7 @@ private[view] final class MalformedRequests(port: Int, seed: Long):
   def memory = { System.gc(); (Runtime.getRuntime.totalMemory - Runtime.getRuntime.freeMemory) >> 20 }
   def told(what: String, from: Long) =
     println(
-      f"$what in ${(System.nanoTime() - from) * 1e-9}%.1f s; refused: ${server.counts.refusedMessages}%,d messages, " +
-        f"${server.counts.refusedRequests}%,d requests, ${server.counts.refusedConnections}%,d connections; heap $memory MiB; " +
-        s"${shows.all.head.watching} viewers"
+      f"$what in ${(System.nanoTime() - from) * 1e-9}%.1f s; heap $memory MiB; ${shows.all.head.watching} viewers"
     )
   println(s"heap $memory MiB before")
   val first = System.nanoTime()

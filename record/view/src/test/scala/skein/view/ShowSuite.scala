@@ -1,5 +1,6 @@
 package skein.view
 
+import org.apache.pekko.http.scaladsl.model.ws.{BinaryMessage, TextMessage}
 import java.nio.ByteOrder
 import skein.record.*
 import skein.units.*
@@ -11,7 +12,7 @@ class ShowSuite extends munit.FunSuite:
     val topics = show.channels.map(channel => channel.id -> channel.topic.name).toMap
     Vector
       .unfold(())(_ => viewer.take().map((_, ())))
-      .collect { case ServerBytes(bytes) if bytes(0) == 1 => bytes }
+      .collect { case BinaryMessage.Strict(bytes) if bytes(0) == 1 => bytes }
       .map: bytes =>
         (
           topics(bytes.slice(1, 5).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getInt.toLong),
@@ -65,7 +66,7 @@ class ShowSuite extends munit.FunSuite:
     val topics = show.channels.map(channel => channel.id -> channel.topic.name).toMap
     Vector
       .unfold(())(_ => viewer.take().map((_, ())))
-      .collect { case ServerBytes(bytes) if bytes(0) == 1 => bytes }
+      .collect { case BinaryMessage.Strict(bytes) if bytes(0) == 1 => bytes }
       .map(bytes =>
         (
           topics(bytes.slice(1, 5).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getInt.toLong),
@@ -116,7 +117,7 @@ class ShowSuite extends munit.FunSuite:
   private def clock(viewer: Viewer): Vector[Double] = Vector
     .unfold(())(_ => viewer.take().map((_, ())))
     .collect {
-      case ServerBytes(bytes) if bytes(0) == 2 =>
+      case BinaryMessage.Strict(bytes) if bytes(0) == 2 =>
         bytes.drop(1).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getLong * 1e-9
     }
 
@@ -148,7 +149,7 @@ class ShowSuite extends munit.FunSuite:
     show.turn(at(30))
     assertEquals(asked, 2)
     val came = Vector.unfold(())(_ => viewer.take().map((_, ())))
-    assert(came.exists { case ServerBytes(bytes) => bytes(0) == 2; case _ => false })
+    assert(came.exists { case BinaryMessage.Strict(bytes) => bytes(0) == 2; case _ => false })
     val late = watching(show, "/skein/reading", "/skein/ending")
     show.turn(at(40))
     assertEquals(clock(late).map(seconds => (seconds * 10).round), Vector(101L))
@@ -174,7 +175,9 @@ class ShowSuite extends munit.FunSuite:
     val show   = LiveShow(heading, Feed(), Vector(gauge))
     val viewer = watching(show, "/skein/graph")
     show.attempt(at(10))
-    val told = Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case ServerText(text) => text }
+    val told = Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case TextMessage.Strict(text) =>
+      text
+    }
     assert(told.exists(_.contains("no graph yet")), told.toString)
     show.attempt(at(11))
     assertEquals(seen(show, viewer).map(_.topic), Vector("/skein/graph"))
@@ -200,7 +203,7 @@ class ShowSuite extends munit.FunSuite:
       show.entered(viewer, now)
       Vector.unfold(())(_ => viewer.take().map((_, ()))).last
     def playing(status: Protocol.Status, position: Instant) =
-      ServerBytes(Protocol.playbackState(Protocol.Playing(status, position, 1, seeked = false, "")))
+      BinaryMessage.Strict(Protocol.playbackState(Protocol.Playing(status, position, 1, seeked = false, "")))
     assertEquals(greeting(at(1.1)), playing(Protocol.Status.Playing, a + Span.ofMillis(100)))
     assertEquals(greeting(at(9)), playing(Protocol.Status.Ended, b))
 
@@ -245,7 +248,9 @@ class ShowSuite extends munit.FunSuite:
     val show   = LiveShow(heading, Feed())
     val viewer = watching(show)
     show.turn(at(1))
-    val told = Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case ServerText(text) => text }
+    val told = Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case TextMessage.Strict(text) =>
+      text
+    }
     assert(!told.exists(_.contains("too many to be shown")), told)
 
   test("the answer to a seek names the request and the time"):
@@ -255,7 +260,7 @@ class ShowSuite extends munit.FunSuite:
     Vector.unfold(())(_ => viewer.take().map((_, ()))): Unit
     show.control(ClientMessage.Playback(playing = false, 1, Some(a + Span.ofMillis(150)), "me"), at(1)): Unit
     val expected = Protocol.Playing(Protocol.Status.Paused, a + Span.ofMillis(150), 1, seeked = true, "me")
-    assertEquals(viewer.take(), Some(ServerBytes(Protocol.playbackState(expected))))
+    assertEquals(viewer.take(), Some(BinaryMessage.Strict(Protocol.playbackState(expected))))
 
   test("a slow viewer receives the notice of a seek before later rows"):
     val show         = replay
@@ -271,7 +276,8 @@ class ShowSuite extends munit.FunSuite:
     show.turn(at(1))
     def playing(status: Protocol.Status, seeked: Boolean, request: String) =
       Protocol.playbackState(Protocol.Playing(status, to, 1, seeked, request))
-    val told = Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case ServerBytes(bytes) => bytes }
+    val told =
+      Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case BinaryMessage.Strict(bytes) => bytes }
     assertEquals(
       told.take(3),
       Vector(
@@ -290,6 +296,6 @@ class ShowSuite extends munit.FunSuite:
     val viewer = watching(show, "/skein/reading")
     for step <- 1 to 30 do feed.offer(Samples.reading(step))
     show.turn(at(1))
-    val Some(ServerText(told)) = viewer.take(): @unchecked
+    val Some(TextMessage.Strict(told)) = viewer.take(): @unchecked
     assert(told.contains("20 older messages are not shown"), told)
     assertEquals(seen(show, viewer).map(_.row("sequence").num), (21 to 30).map(_.toDouble).toVector)

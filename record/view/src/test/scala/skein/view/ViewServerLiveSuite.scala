@@ -125,7 +125,6 @@ class ViewServerLiveSuite extends munit.FunSuite:
       connect(port, Protocol.Names.last)(Origin(s"http://localhost:$port")).answer.response.status.intValue,
       101
     )
-    assertEquals(served.server.counts.refusedRequests, 6L)
 
   serving().test("the page and all its resources are served, and it refers to no other site"): served =>
     val port              = served.server.port
@@ -164,7 +163,6 @@ class ViewServerLiveSuite extends munit.FunSuite:
     val large = connect(served.server.port, Protocol.Names*)()
     large.send(ByteString(new Array[Byte](200_000)))
     assertEquals(other.until(text)("op").str, "serverInfo")
-    assertEquals(served.server.counts.refusedMessages >= 4, true)
 
   serving(
     ViewerLimits(connections = 5),
@@ -175,7 +173,6 @@ class ViewServerLiveSuite extends munit.FunSuite:
     // Sockets are accepted in order; a closed one sees the end of its stream, or a reset.
     for socket <- sockets.dropRight(5) do assertEquals(Try(socket.getInputStream.read()).getOrElse(-1), -1)
     sockets.foreach(_.close())
-    assertEquals(served.server.counts.displacedConnections, 195L)
 
   private val standing = SetClock()
 
@@ -213,7 +210,6 @@ class ViewServerLiveSuite extends munit.FunSuite:
         assert(ended(gone))
       viewer.send("nonsense")
       viewer.until(text.andThen { case said if said("op").str == "status" => () })
-      assertEquals(served.server.counts.displacedConnections, 3L)
 
   serving().test("a page of another site gets no flight, under any name"): served =>
     val port                                                              = served.server.port
@@ -271,10 +267,6 @@ class ViewServerLiveSuite extends munit.FunSuite:
     val other = connect(served.server.port, Protocol.Names*)()
     val took  = MalformedFrames(served.server.port, "/flights/stream-vpn", seed).write(30_000)
     assert(took > 70, s"seed $seed: $took connections")
-    assert(
-      served.server.counts.refusedMessages >= took / 2,
-      s"seed $seed: ${served.server.counts.refusedMessages}"
-    )
     other.send("""{"op":"subscribe","subscriptions":[{"id":5,"channelId":4}]}""")
     val channel = served.show.channels.find(_.topic.name == "/skein/reading").get.id
     other.send(s"""{"op":"subscribe","subscriptions":[{"id":6,"channelId":$channel}]}""")
