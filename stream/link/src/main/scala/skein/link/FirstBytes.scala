@@ -2,7 +2,7 @@ package skein.link
 
 import java.nio.charset.StandardCharsets.US_ASCII
 import org.apache.pekko.NotUsed
-import org.apache.pekko.stream.scaladsl.Flow
+import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import org.apache.pekko.util.ByteString
 
 /** Recognises the protocol of a new connection's peer by its first bytes. A browser opens connections to any
@@ -50,19 +50,20 @@ object FirstBytes:
     *   - '''Cancels when''' downstream cancels, or it fails.
     */
   def guard(from: Address, own: Set[Int] = Set.empty): Flow[ByteString, ByteString, NotUsed] =
-    // None: decided.
-    Flow[ByteString].statefulMap(() => Option(ByteString.empty))(
-      (kept, bytes) =>
-        kept match
-          case None         => (None, bytes)
-          case Some(before) =>
-            val all = before ++ bytes
-            verdict(all, own) match
-              case Own           => (None, all)
-              case Undecided     => (Some(all), ByteString.empty)
-              case Foreign(what) => throw TransportError.Foreign(from, what)
-      ,
-      identity // no more bytes follow, so that these are no request
+    val whole = Flow[ByteString].map(Option(_)).concatLazy(Source.single(None))
+    // No bytes kept: decided.
+    whole.statefulMap(() => Option(ByteString.empty))(
+      {
+        case (None, bytes)              => (None, bytes.getOrElse(ByteString.empty))
+        case (Some(before), None)       => (None, before) // no more follow, so that these are no request
+        case (Some(before), Some(next)) =>
+          val all = before ++ next
+          verdict(all, own) match
+            case Own           => (None, all)
+            case Undecided     => (Some(all), ByteString.empty)
+            case Foreign(what) => throw TransportError.Foreign(from, what)
+      },
+      _ => None
     ).filter(_.nonEmpty)
 
   /** HTTP methods that a page may send without a prior OPTIONS request, and methods that programs send. */

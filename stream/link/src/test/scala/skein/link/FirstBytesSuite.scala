@@ -1,7 +1,7 @@
 package skein.link
 
 import org.apache.pekko.actor.ActorSystem
-import org.apache.pekko.stream.scaladsl.{Sink, Source}
+import org.apache.pekko.stream.scaladsl.Source
 import org.apache.pekko.util.ByteString
 import scala.concurrent.Await
 import scala.concurrent.duration.*
@@ -48,18 +48,29 @@ class FirstBytesSuite extends munit.FunSuite:
     assertEquals(verdict(ByteString("GET "), own), Foreign("an HTTP request (GET)"))
     assertEquals(verdict(hello, Set(22)), Own)
 
-  private def through(pieces: ByteString*) = Await.result(
-    Source(pieces).via(guard(Address("127.0.0.1", 5))).runWith(Sink.seq).map(_.reduce(_ ++ _))(using
-      system.dispatcher
-    ),
-    20.seconds
-  )
+  /** All bytes that come through before the end, and how it ends. */
+  private def through(pieces: Source[ByteString, Any]): (ByteString, Option[Throwable]) =
+    var passed  = ByteString.empty
+    val guarded = pieces.via(guard(Address("127.0.0.1", 5))).runForeach(passed ++= _)
+    val end     = Await.ready(guarded, 20.seconds).value.get
+    (passed, end.failed.toOption)
+
+  private def through(pieces: String*): (ByteString, Option[Throwable]) =
+    through(Source(pieces.map(ByteString(_))))
 
   test("the guard passes all bytes of its own protocol, and no bytes of other protocols"):
-    assertEquals(through(ByteString("G"), ByteString("ET"), ByteString("S on")), ByteString("GETS on"))
-    assertEquals(through(ByteString("P"), ByteString("UT")), ByteString("PUT"), "which no more bytes follow")
-    val error = intercept[TransportError.Foreign](through(ByteString("GE"), ByteString("T / HTTP")))
+    assertEquals(through("G", "ET", "S on"), (ByteString("GETS on"), None))
+    assertEquals(through("P", "UT"), (ByteString("PUT"), None), "which no more bytes follow")
+    val (passed, error) = through("GE", "T / HTTP")
     assertEquals(
-      error.getMessage,
-      "connection from 127.0.0.1:5 closed: expected this port's own protocol, got an HTTP request (GET)"
+      (passed, error.map(_.getMessage)),
+      (
+        ByteString.empty,
+        Some(
+          "connection from 127.0.0.1:5 closed: expected this port's own protocol, got an HTTP request (GET)"
+        )
+      )
     )
+    val lost  = TransportError.Lost(Address("127.0.0.1", 5), "reset")
+    val reset = Source.single(ByteString("GE")).concat(Source.failed(lost))
+    assertEquals(through(reset), (ByteString.empty, Some(lost)))
