@@ -84,7 +84,7 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised, TemporaryF
       val judge = ClusterEvaluator(LearnWork.episodes(by), Judge.Candidates, atMost = 16, _ => ())
       LearnRun(short, judge, Some(folder), () => later(), isElsewhere = true)
         .run(from, 1, () => isStopped.get)(_ => ())
-        .flatMap(_.unfailing)
+        .flatMap(learned => learned.failure.toLeft(learned.state))
         .fold(fail(_), identity)
     val whole  = learned(workerOf(short), temporaryFolder(), LearnState())
     val folder = temporaryFolder()

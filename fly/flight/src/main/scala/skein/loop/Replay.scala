@@ -171,7 +171,12 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
             val timed  = if paused then PausedLoop.timeless(values) else values
             sensing.sensor -> SensorReading(self, sensing.sensor, read.sequence, read.quantities, timed)
           .toRight(
-            Difference(where(of), sensing.sensor, s"measurement ${sensing.measurement}", "no such one")
+            Difference(
+              where(of),
+              sensing.sensor,
+              s"measurement ${sensing.measurement}",
+              "no such measurement"
+            )
           )
       .map(_.toMap)
 

@@ -154,7 +154,6 @@ final class TeamBatch(
         worker.fly(worlds, prepared, some, outcomes)
     outcomes
 
-  /** Number of worlds that a thread takes together, given one of them. */
   /** Groups worlds that share one key and one link. */
   private def byEpisode(worlds: TeamWorlds, numbers: Array[Int]): Iterable[Array[Int]] =
     val groups = mutable.LinkedHashMap.empty[(Delays, Int), mutable.ArrayBuilder.ofInt]
@@ -162,6 +161,7 @@ final class TeamBatch(
       groups.getOrElseUpdate((worlds.link(world), worlds.key(world)), mutable.ArrayBuilder.ofInt()) += world
     groups.values.map(_.result())
 
+  /** Number of worlds that a thread takes together, given one of them. */
   private def batchOf(team: PreparedTeam): Int =
     if team.form != null then TimetableKernel.WORLDS
     else if team.isStepped then SteppedRollouts.worldsOf(model, team.vehicles.size)

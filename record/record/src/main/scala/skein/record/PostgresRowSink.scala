@@ -81,7 +81,7 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
       val insert  = inserts.getOrElseUpdate(table.name, connection.prepareStatement(insertOf(table)))
       for (number, record) <- some do
         insert.setLong(1, number)
-        columns.append(record, StatementRow(insert, connection))
+        columns.append(record, StatementRow(insert, connection, columns.definitions))
         insert.addBatch()
       insert.executeBatch(): Unit
     connection.commit()
@@ -141,7 +141,8 @@ object PostgresRowSink:
         Left(s"Postgres at ${target.shown}: ${error.getMessage.linesIterator.next()}")
 
 /** Sets the values of one row in the order of the columns; the first is the row's number. */
-private final class StatementRow(insert: PreparedStatement, connection: Connection) extends RowWriter:
+private final class StatementRow(insert: PreparedStatement, connection: Connection, columns: Vector[Column])
+    extends RowWriter:
   private var place = 1
 
   private def next: Int =
@@ -159,7 +160,18 @@ private final class StatementRow(insert: PreparedStatement, connection: Connecti
   def texts(values: Vector[String]): Unit   = array("text", values)
   def blob(value: Blob): Unit               = insert.setBytes(next, value.packed)
 
-  def nothing(): Unit = insert.setNull(next, Types.NULL)
+  // Typed, or else Postgres would prepare the statement again wherever other columns are null.
+  def nothing(): Unit =
+    val at = next
+    insert.setNull(
+      at,
+      columns(at - 2).sqlType match
+        case "VARCHAR"                   => Types.VARCHAR
+        case "BIGINT"                    => Types.BIGINT
+        case "DOUBLE"                    => Types.DOUBLE
+        case kind if kind.endsWith("[]") => Types.ARRAY
+        case other                       => throw IllegalArgumentException(s"column of type $other")
+    )
 
 /** The address of a Postgres database.
   *

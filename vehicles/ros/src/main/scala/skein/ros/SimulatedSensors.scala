@@ -75,7 +75,7 @@ object SimulatedSensors:
       world.vehicles.map: vehicle =>
         Carried(
           vehicle,
-          equipment.cameras.get(vehicle.name).filter(_.nonEmpty).fold(Vector(Usual))(_.keys.toVector),
+          equipment.cameras.get(vehicle.name).filter(_.nonEmpty).fold(Vector(Usual))(_.keys.toVector.sorted),
           equipment.lidars.of(vehicle).map((name, lidar) => (name = name, isLocal = lidar.sensorFrame))
         )
 

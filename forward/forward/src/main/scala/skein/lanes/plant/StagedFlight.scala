@@ -124,8 +124,7 @@ private[lanes] final class StagedFlight(
   def look(seen: Array[Array[Float]], into: Int, withVelocity: Boolean): Unit =
     val moves = withVelocity || lanes.inSpace
     val look  = if moves then moving.look else moving.position
-    for i <- 0 until (if moves then stages.look.outputs else LaneObservation.VX) do
-      look.output(i, seen(i), into)
+    eachBelow(if moves then stages.look.outputs else LaneObservation.VX)(i => look.output(i, seen(i), into))
     look()
 
   /** Writes the present state in rows.

@@ -86,12 +86,12 @@ private[lanes] final class PredictedPlants(
     if correction.isTold then take(seen, reading, flight.state, 0)
     else System.arraycopy(states, reading * count, flight.state, 0, flight.state.length)
     if !fly(sent, propagation) then
-      for i <- 0 until components do System.arraycopy(seen(i), reading, seen(i), into, WORLDS)
+      eachBelow(components)(i => System.arraycopy(seen(i), reading, seen(i), into, WORLDS))
     else flight.look(seen, into, withVelocity)
 
   /** Corrects the simulated state with a reading. */
   private def take(seen: Array[Array[Float]], reading: Int, into: Array[Float], at: Int): Unit =
-    for i <- 0 until components do correct.input(count + i, seen(i), reading)
+    eachBelow(components)(i => correct.input(count + i, seen(i), reading))
     correct.outputs(count, into, at)
     correct()
 
