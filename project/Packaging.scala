@@ -142,14 +142,17 @@ object Packaging {
     val classPath = jars.map(_.getPath).mkString(":")
     val aot       = (lib / "skein.aot").getPath
     val program   = (runtime / "bin" / "java").getPath +: (Jvm.nativeAccess ++ vectors ++ Jvm.control) :+ "-cp" :+ classPath
+    val rehearsed = sources / "rehearsed"
     val answers   = lib / "answers"
     IO.createDirectory(answers)
     IO.withTemporaryDirectory { folder =>
       val cache  = program :+ s"-XX:AOTCacheOutput=$aot"
-      val status = Process(cache ++ Seq("skein.cli.Rehearsal", (sources / "rehearsed").getPath, answers.getPath), folder).!(log)
+      val status = Process(cache ++ Seq("skein.cli.Rehearsal", rehearsed.getPath, answers.getPath), folder).!(log)
       // What a busy machine did not fly is slower to start, no more.
       if (status != 0) log.warn("not all commands of the rehearsal ended well")
       if (!file(aot).exists) sys.error("the rehearsal made no ahead-of-time cache")
+      val wanted = IO.readLines(rehearsed).flatMap(_.split(" > ").drop(1))
+      wanted.filterNot(name => (answers / name).exists).foreach(name => sys.error(s"the rehearsal printed no $name"))
     }
     home
   }
