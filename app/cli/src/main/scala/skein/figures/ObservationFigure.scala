@@ -17,7 +17,9 @@ object ObservationFigure:
   def apply(set: FlightSet): Option[Drawing] =
     val flights = set.flights.filter(_.roles.nonEmpty)
     Option.when(flights.nonEmpty):
-      val panels = Drawing.grid(FlightSummary.observations(flights).map(panel(_, flights)), columns = 2)
+      val observed = FlightSummary.observations(flights)
+      val longest  = observed.map(_.title.length).max * Theme.titleLetter
+      val panels   = Drawing.grid(observed.map(panel(_, flights, longest)), columns = 2)
       Drawing.stacked(panels, Legend.rows(left, panels.width - left, legend(flights)*))
 
   /** A panel for bars of milliseconds.
@@ -33,11 +35,12 @@ object ObservationFigure:
     height = 150
   )
 
-  private def panel(observation: TimingObservation, flights: Vector[FlightSummary]): Drawing =
+  /** @param least least width of the bars, so that no title is cut */
+  private def panel(observation: TimingObservation, flights: Vector[FlightSummary], least: Double): Drawing =
     val shown   = flights.flatMap(summary => summary.roles.map(role => bar(observation, summary, role)))
     val highest = shown.flatMap(bar => bar.mean ++ bar.published ++ bar.trueAge).maxOption.getOrElse(1.0)
     val lefts   = placed(flights)
-    val width   = lefts.last + widthOf(flights.last) + loopGap
+    val width   = (lefts.last + widthOf(flights.last) + loopGap).max(least)
     val panel   = bars(width, highest)
     val groups  = flights.zip(lefts).flatMap: (summary, left) =>
       val drawn = summary.roles.zipWithIndex.flatMap: (role, index) =>

@@ -41,6 +41,11 @@ class SparseFiguresSuite extends munit.FunSuite:
     ))).get
     val lines = figure.shapes.collect { case path: Mark.Path => path.points.map(_.x).max }
     assert(clue(lines.max) > 0.85 * clue(figure.width))
+    val cut = figure.shapes.collect:
+      case text: Mark.Text
+          if text.bold && text.at.x + text.content.length * Theme.titleLetter > figure.width =>
+        text.content
+    assertEquals(cut.toVector, Vector.empty)
 
   test("the labels of neighbouring columns' arrows do not overlap"):
     val loops   = Seq("sequential", "futures", "stream")
