@@ -120,7 +120,7 @@ object LearnedUnderDelay:
             s"$folder: ${state.rounds} of ${setup.rounds} rounds, best ${state.best.fold(0.0)(_.mean)} m"
           )
       )
-      .flatMap(learned => learned.failure.toLeft(learned.state))
+      .flatMap(_.unfailing)
       .fold(sys.error, identity)
     Console.err.println(s"processor time before $cpu, now ${ProcessHandle.current.info.totalCpuDuration}")
     setup.policy(state.best.get.weights)

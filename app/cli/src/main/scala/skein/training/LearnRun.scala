@@ -13,7 +13,9 @@ import skein.units.OwnFailure
   *
   * @param failure why it ended early, unless it was stopped
   */
-final case class Learned(state: LearnState, failure: Option[String])
+final case class Learned(state: LearnState, failure: Option[String]):
+
+  def unfailing: Either[String, LearnState] = failure.toLeft(state)
 
 /** Learns round by round, evaluates the policy from time to time, and keeps its state on disk.
   *
@@ -121,6 +123,7 @@ final class LearnRun(
     // The learner has already changed in an abandoned round, so its state is not saved: the round is
     // repeated.
     val ended = mistake.flatMap(_ => told(Right(judged())))
+    // All rounds done, it would count as finished, without its last evaluation.
     Learned(
       if isCut then state.copy(rounds = state.rounds.min(setup.rounds - 1)) else state,
       ended.left.toOption

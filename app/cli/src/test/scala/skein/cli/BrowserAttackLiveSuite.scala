@@ -12,7 +12,6 @@ import skein.cluster.CoordinatorNode
 import skein.flight.SolvedFlight
 import skein.hil.AutopilotKind
 import skein.link.*
-import skein.link.Address
 import skein.observe.{AirSimAnalysis, ObservingProxy}
 import skein.record.Samples
 import skein.report.PaperReport
@@ -96,7 +95,7 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
       ArraySeq.fill[Byte](32)(0)
     ).fold(fail(_), identity)): ledger =>
       val coordinator = CoordinatorNode
-        .start(Address("127.0.0.1", 0), None, ArraySeq.empty[Byte], ledger)(_ => ())
+        .start(free, None, ArraySeq.empty[Byte], ledger)(_ => ())
         .fold(fail(_), identity)
       val word    = SolverMessageCodec.bytes(SolverMessage.Goodbye(5))
       val goodbye = Array[Byte](0, 0, 0, word.length.toByte) ++ word

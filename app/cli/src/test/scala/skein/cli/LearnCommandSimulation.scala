@@ -129,7 +129,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
         now
       LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => later())
         .run(from, 1, () => done >= rounds)(state => done = state.rounds)
-        .flatMap(end => end.failure.toLeft(end.state))
+        .flatMap(_.unfailing)
         .fold(fail(_), identity)
     val whole  = learn(temporaryFolder(), LearnState(), setup.rounds)
     val folder = temporaryFolder()

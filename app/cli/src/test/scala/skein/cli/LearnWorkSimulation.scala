@@ -30,8 +30,9 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised, TemporaryF
     Vector.tabulate(setup.family.space.dimension)(number => math.sin(number.toDouble))
   )
 
+  private lazy val worker = workerOf(setup)
+
   /** A worker that knows only the question's bytes; it answers the last block first. */
-  private lazy val worker                                = workerOf(setup)
   private def workerOf(setup: LearnSetup): BlockExecutor =
     val solver =
       QuestionKind.solvers.of(QuestionKind.Learn.of(LearnWork.question(setup))).fold(fail(_), identity)()
@@ -84,17 +85,18 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised, TemporaryF
       val judge = ClusterEvaluator(LearnWork.episodes(by), Judge.Candidates, atMost = 16, _ => ())
       LearnRun(short, judge, Some(folder), () => later(), isElsewhere = true)
         .run(from, 1, () => isStopped.get)(_ => ())
-        .flatMap(learned => learned.failure.toLeft(learned.state))
+        .flatMap(_.unfailing)
         .fold(fail(_), identity)
-    val whole  = learned(workerOf(short), temporaryFolder(), LearnState())
-    val folder = temporaryFolder()
+    val answering = workerOf(short)
+    val whole     = learned(answering, temporaryFolder(), LearnState())
+    val folder    = temporaryFolder()
     // Does not answer the last evaluation.
     object Silent extends BlockExecutor:
       private val answer = Promise[Either[String, Option[Vector[ArraySeq[Byte]]]]]()
       private val posed  = AtomicInteger()
       def cancel(): Unit = answer.success(Right(None)): Unit
       def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
-        if posed.incrementAndGet() < whole.scores.size then workerOf(short).compute(works, onAnswer)
+        if posed.incrementAndGet() < whole.scores.size then answering.compute(works, onAnswer)
         else
           isStopped.set(true)
           answer.future
@@ -102,7 +104,7 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised, TemporaryF
     assertEquals(stopped.rounds, short.rounds - 1)
     assertEquals(LearnFile.read(folder).map(_.state), Right(stopped))
     isStopped.set(false)
-    assertEquals(learned(workerOf(short), folder, stopped), whole)
+    assertEquals(learned(answering, folder, stopped), whole)
 
   test("a worker whose result differs from the question's probe refuses the question"):
     val other = String(LearnWork.question(setup).toArray, UTF_8).replaceAll("\"seed\":\"?3\"?", "\"seed\":4")
