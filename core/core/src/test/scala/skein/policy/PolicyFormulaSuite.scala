@@ -188,12 +188,6 @@ object PolicyFormulaSuite:
   private def flying(seen: Observation, north: Double, east: Double) =
     Action.VelocityAt(north, east, seen.startDown)
 
-  trait Forgetful extends Policy:
-    type Memory = Unit
-    def start: Unit = ()
-    def action(seen: Observation): Action
-    final def choose(seen: Observation, memory: Unit): (Action, Unit) = (action(seen), ())
-
   case object Chase extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
@@ -201,7 +195,7 @@ object PolicyFormulaSuite:
       val way = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
       (Action.Along(Radians(StrictMath.atan2(way.y, way.x)), seen.cruise, seen.startDown), ())
 
-  case object Ages extends Forgetful:
+  case object Ages extends Policy.Memoryless:
     private val old                       = Span.ofMillis(400)
     def action(seen: Observation): Action =
       val other = seen.vehicles(seen.opponent)
@@ -249,7 +243,7 @@ object PolicyFormulaSuite:
       val next          = near.fold((north * 0.5, 1.0))(place => (place.x / 10, east + 0.1))
       (flying(seen, next._1, next._2.min(4)), next)
 
-  case object Crowd extends Forgetful:
+  case object Crowd extends Policy.Memoryless:
     def action(seen: Observation): Action =
       var (north, east) = (0.0, 0.0)
       for vehicle <- seen.vehicles.indices if vehicle != seen.self do
@@ -260,7 +254,7 @@ object PolicyFormulaSuite:
       for (each, i) <- seen.vehicles.zipWithIndex do north += each.kinematics.velocityNed.x * 0.01 * i
       flying(seen, north, east)
 
-  case object Collections extends Forgetful:
+  case object Collections extends Policy.Memoryless:
     def action(seen: Observation): Action =
       val others  = seen.vehicles.indices.filter(_ != seen.self)
       val nearest = others.minBy(towards(seen, _).norm)
@@ -273,7 +267,7 @@ object PolicyFormulaSuite:
     case Wait
     case Go(speed: Double)
     case Flee(by: Vector3)
-  case object Modes extends Forgetful:
+  case object Modes extends Policy.Memoryless:
     def action(seen: Observation): Action =
       val way  = towards(seen, seen.opponent)
       val mode =
@@ -283,13 +277,13 @@ object PolicyFormulaSuite:
         case Mode.Go(speed) => flying(seen, speed, -speed)
         case Mode.Flee(by)  => flying(seen, -by.x, -by.y)
 
-  case object Looking extends Forgetful:
+  case object Looking extends Policy.Memoryless:
     def action(seen: Observation): Action =
       val way = towards(seen, seen.opponent)
       if way.x > 0 then Action.VelocityAt(way.x / 9, 1, seen.startDown, Yaw.Forward)
       else Action.VelocityAt(2, way.y / 9, seen.startDown, Yaw.Towards(Radians(way.y)))
 
-  case object Mirror extends Forgetful:
+  case object Mirror extends Policy.Memoryless:
     def action(seen: Observation): Action =
       val between = (seen.headings(seen.opponent).value + seen.headings(seen.self).value) / 2
       Action.Along(Radians(between), MetresPerSecond(seen.headings.size), seen.startDown)
@@ -306,28 +300,28 @@ object PolicyFormulaSuite:
         else flying(seen, way.x / 5, way.y / 5)
       (action, memory * 0.9)
 
-  case object Hovering extends Forgetful:
+  case object Hovering extends Policy.Memoryless:
     def action(seen: Observation): Action = Action.Hover
-  case object Rising extends Forgetful:
+  case object Rising extends Policy.Memoryless:
     def action(seen: Observation): Action = Action.Velocity(Vector3(1, 2, -1.5))
-  case object Going extends Forgetful:
+  case object Going extends Policy.Memoryless:
     def action(seen: Observation): Action = Action.Position(Vector3(1, 2, -20), seen.cruise)
-  case object Sometimes extends Forgetful:
+  case object Sometimes extends Policy.Memoryless:
     def action(seen: Observation): Action =
       if seen.own.kinematics.positionNed.x > 0 then flying(seen, 1, 2) else Action.Land
-  case object Tilted extends Forgetful:
+  case object Tilted extends Policy.Memoryless:
     def action(seen: Observation): Action = flying(seen, seen.own.kinematics.orientation.yawRad, 0)
-  case object Counting extends Forgetful:
+  case object Counting extends Policy.Memoryless:
     def action(seen: Observation): Action = flying(seen, seen.decisions.toDouble, 0)
-  case object Endless extends Forgetful:
+  case object Endless extends Policy.Memoryless:
     def action(seen: Observation): Action =
       var north = seen.own.kinematics.positionNed.x
       while north > 1 do north /= 2
       flying(seen, north, 0)
-  case object Rounded extends Forgetful:
+  case object Rounded extends Policy.Memoryless:
     def action(seen: Observation): Action =
       flying(seen, math.round(seen.own.kinematics.positionNed.x).toDouble, 0)
-  case object Products extends Forgetful:
+  case object Products extends Policy.Memoryless:
     def action(seen: Observation): Action = flying(seen, (seen.elapsed / 3).toSeconds, 0)
   case object Growing extends Policy:
     type Memory = Vector[Double]
@@ -338,11 +332,11 @@ object PolicyFormulaSuite:
     type Memory = Long
     def start: Long                                             = 0
     def choose(seen: Observation, memory: Long): (Action, Long) = (flying(seen, 1, 0), memory + 1)
-  case object Sensing extends Forgetful:
+  case object Sensing extends Policy.Memoryless:
     override def sensors: Set[String]     = Set("lidar")
     def action(seen: Observation): Action = flying(seen, 1, 0)
-  final case class Higher(down: Metres) extends Forgetful:
+  final case class Higher(down: Metres) extends Policy.Memoryless:
     def action(seen: Observation): Action = Action.VelocityAt(1, 2, down)
-  case object Climbing extends Forgetful:
+  case object Climbing extends Policy.Memoryless:
     def action(seen: Observation): Action =
       Action.VelocityAt(1, 2, Metres(seen.own.kinematics.positionNed.z - 1))

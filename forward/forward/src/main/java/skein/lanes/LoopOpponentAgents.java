@@ -119,7 +119,7 @@ final class LoopOpponentAgents extends LaneAgents implements TeamMember {
 
   /** Decides from the readings of both vehicles. */
   private void see(LaneAgents opponents, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
-    for (int what = 0; what < (policy.needsVelocity() ? LaneObservation.READ : LaneObservation.VX); what++) {
+    for (int what = 0; what < LaneObservation.count(policy.needsVelocity(), false); what++) {
       int from = seenFrom() + what * WORLDS;
       observation.see(what, opponents.seen(), from, seen(), from);
     }

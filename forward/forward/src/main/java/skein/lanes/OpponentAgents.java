@@ -113,7 +113,7 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
     TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
         opponentSeen = views[view + 1 - self] * WORLDS;
-    int count = needsVelocity() ? LaneObservation.READ : LaneObservation.VX;
+    int count = LaneObservation.count(needsVelocity(), false);
     for (int what = 0; what < count; what++)
       observation.see(what, theirs.seen[what], opponentSeen, ours.seen[what], ownSeen);
     Arrays.fill(observation.elapsed, times[number]);

@@ -14,9 +14,9 @@ class EngagementSuite extends munit.FunSuite:
       .getOrElse(duel.head.copy(role = role))
       .copy(name = s"$role$number", startPositionNed = Vector3(north, east, -20), policy = policy)
 
-  private def places(rollout: ScoredRollout, key: Int = 7): Vector[(Int, Double, Double)] =
+  private def places(rollout: Rollout, key: Int = 7): Vector[(Int, Double, Double)] =
     val seen = Vector.newBuilder[(Int, Double, Double)]
-    val _    = rollout.fly(
+    rollout.fly(
       key,
       observer = new LoopObserver:
         override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
@@ -62,14 +62,14 @@ class EngagementSuite extends munit.FunSuite:
       )
     )
     val alone =
-      places(ScoredRollout(
+      places(Rollout(
         Pair.paper.engagement,
         LoopTiming.Paused(),
         DelayTable.none,
         PlantResponse(ReducedModel.AirSimLag)
       ))
     val together =
-      places(ScoredRollout(
+      places(Rollout(
         Engagement.of(scenario),
         LoopTiming.Paused(),
         DelayTable.none,
@@ -93,7 +93,7 @@ class EngagementSuite extends munit.FunSuite:
         agent(Role.Pursuer, 1, 0, 0, PurePursuit(3))
       )
     )
-    val seen = places(ScoredRollout(
+    val seen = places(Rollout(
       Engagement.of(scenario, 12),
       LoopTiming.Stream(),
       DelayTable.direct,
@@ -113,7 +113,7 @@ class EngagementSuite extends munit.FunSuite:
     val nearest              = Engagement.of(Fleet(agents), 3)
     val assigned             = nearest.copy(assignment = Assignment(Vector(Vector(2), Vector(2), Vector(0))))
     def last(of: Engagement) =
-      places(ScoredRollout(of, LoopTiming.Paused(), DelayTable.none, VelocityResponses.Ideal)).last
+      places(Rollout(of, LoopTiming.Paused(), DelayTable.none, VelocityResponses.Ideal)).last
     assert(last(nearest)._3 > 5, s"${last(nearest)}: the nearer evader runs east")
     assertEqualsDouble(last(assigned)._3, 0, 1e-9)
 

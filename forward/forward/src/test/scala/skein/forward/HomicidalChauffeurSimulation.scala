@@ -31,7 +31,9 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
         2 * math.Pi * random.nextDouble()
       )
 
-  private def duel(pursuer: Policy, evader: Policy, start: Start, durationS: Double): ScoredRollout =
+  private val timing = LoopTiming.Paused(0.0025)
+
+  private def duel(pursuer: Policy, evader: Policy, start: Start, durationS: Double): Engagement =
     val engaged = Pair(
       Pair.paper.pursuer.copy(policy = pursuer, startX = 0, startY = 0, startHeadingRad = 0),
       Pair.paper.evader.copy(
@@ -42,7 +44,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       ),
       durationS
     )
-    ScoredRollout(engaged.engagement, LoopTiming.Paused(0.0025), DelayTable.none, VelocityResponses.Ideal)
+    engaged.engagement
 
   private def closestM(
       pursuer: Policy,
@@ -50,7 +52,9 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       start: Start,
       durationS: Double
   ): Double =
-    duel(pursuer, evader, start, durationS).fly(0).minDistanceM
+    ScoredRollout(duel(pursuer, evader, start, durationS), timing, DelayTable.none, VelocityResponses.Ideal)
+      .fly(0)
+      .minDistanceM
 
   /** Simulates until capture, or to the end without it. */
   private def captureS(
@@ -61,7 +65,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       durationS: Double
   ): Double =
     boundary:
-      val _ = duel(pursuer, evader, start, durationS).fly(
+      Rollout(duel(pursuer, evader, start, durationS), timing, DelayTable.none, VelocityResponses.Ideal).fly(
         0,
         observer = PaperPath((timeS, ex, ey, px, py) =>
           if math.hypot(ex - px, ey - py) <= captureM then break(timeS)

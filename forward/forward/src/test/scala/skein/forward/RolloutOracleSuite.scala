@@ -30,7 +30,7 @@ class RolloutOracleSuite extends munit.FunSuite:
 
   private def positions(duel: Pair, timing: LoopTiming, link: Delays, model: VelocityResponse, key: Int) =
     val points = ArrayBuffer.empty[Vector[Double]]
-    val _      = ScoredRollout(duel.engagement, timing, link, model).fly(
+    Rollout(duel.engagement, timing, link, model).fly(
       key,
       observer = PaperPath((_, ex, ey, px, py) => points += Vector(ex, ey, px, py))
     )
@@ -90,8 +90,7 @@ class RolloutOracleSuite extends munit.FunSuite:
     val observer = new LoopObserver:
       override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit =
         sent(vehicle) += action.headingRad(0)
-    val _ =
-      ScoredRollout(Pair.paper.copy(durationS = 20).engagement, timing, link, lag).fly(0, observer = observer)
+    Rollout(Pair.paper.copy(durationS = 20).engagement, timing, link, lag).fly(0, observer = observer)
     sent.view.mapValues(_.toVector).toMap
 
   for roundTripMs <- Seq(0.0, 30.0, 70.0) do

@@ -14,12 +14,12 @@ class RolloutSuite extends munit.FunSuite:
   private val awayFrom: HeadingPolicy.Memoryless = seen => math.atan2(-seen.dyM, -seen.dxM)
   private val lag: VelocityResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
-  private def trajectory(rollout: ScoredRollout, key: Int): Vector[(Double, Double, Double, Double)] =
+  private def trajectory(rollout: Rollout, key: Int): Vector[(Double, Double, Double, Double)] =
     val points = ArrayBuffer.empty[(Double, Double, Double, Double)]
-    val _      = rollout.fly(key, observer = PaperPath((_, ex, ey, px, py) => points += ((ex, ey, px, py))))
+    rollout.fly(key, observer = PaperPath((_, ex, ey, px, py) => points += ((ex, ey, px, py))))
     points.toVector
 
-  private def distances(rollout: ScoredRollout, key: Int): Vector[Double] =
+  private def distances(rollout: Rollout, key: Int): Vector[Double] =
     trajectory(rollout, key).map((ex, ey, px, py) => math.hypot(ex - px, ey - py))
 
   private def assertClose(actual: Seq[Double], expected: Seq[Double], tolerance: Double): Unit =
@@ -29,9 +29,9 @@ class RolloutSuite extends munit.FunSuite:
   for model <- Seq(VelocityResponses.quadrotor(), lag, VelocityResponses.Ideal); loop <- loops do
     test(s"without delays, $loop flies as paused does, with ${model.getClass.getSimpleName}"):
       val truth =
-        distances(ScoredRollout(Pair.paper.engagement, LoopTiming.Paused(), DelayTable.none, model), 1)
+        distances(Rollout(Pair.paper.engagement, LoopTiming.Paused(), DelayTable.none, model), 1)
       assertClose(
-        distances(ScoredRollout(Pair.paper.engagement, loop, DelayTable.none, model), 1),
+        distances(Rollout(Pair.paper.engagement, loop, DelayTable.none, model), 1),
         truth,
         1e-6
       )
@@ -77,8 +77,8 @@ class RolloutSuite extends munit.FunSuite:
       )
       val turned = Pair(turn(offset.pursuer), turn(offset.evader))
       val key    = WorldRandom.key(1, 2, 3)
-      val plain  = distances(ScoredRollout(offset.engagement, loop, DelayTable.direct, lag), key)
-      assertClose(distances(ScoredRollout(turned.engagement, loop, DelayTable.direct, lag), key), plain, 1e-6)
+      val plain  = distances(Rollout(offset.engagement, loop, DelayTable.direct, lag), key)
+      assertClose(distances(Rollout(turned.engagement, loop, DelayTable.direct, lag), key), plain, 1e-6)
 
   test("with symmetric policies, the mirrored duel has the mirrored flight"):
     val evader: HeadingPolicy.Memoryless =
@@ -90,7 +90,7 @@ class RolloutSuite extends munit.FunSuite:
         Pair.paper.evader.copy(policy = evader, startHeadingRad = 0.4 * side),
         durationS = 20
       )
-      trajectory(ScoredRollout(duel.engagement, LoopTiming.Stream(), DelayTable.vpn, lag), key)
+      trajectory(Rollout(duel.engagement, LoopTiming.Stream(), DelayTable.vpn, lag), key)
     for ((ex, ey, px, py), (mx, my, qx, qy)) <- fly(1).zip(fly(-1)) do
       assertClose(Seq(mx, -my, qx, -qy), Seq(ex, ey, px, py), 1e-6)
 

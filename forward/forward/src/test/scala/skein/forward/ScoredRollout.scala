@@ -1,8 +1,6 @@
 package skein.forward
 
-import skein.fusion.Exposure
-import skein.policy.{Action, Role}
-import skein.forecast.Leg
+import skein.policy.Role
 
 /** The outcome of an episode. Distances are horizontal, taken once a period.
   *
@@ -37,40 +35,36 @@ final case class EvaderOutcome(
     captureS: Double
 )
 
-/** A [[Rollout]] with the outcome of each episode: the minimum distance of any evader, the mean over the
-  * evaders of each mean, and the time of the last capture; distances are to the nearest pursuer, efforts are
-  * summed over a side. In a team without sides all vehicles count, with the distance to the nearest other,
-  * and the effort is that of the evaders.
+/** Scores an episode: the minimum distance of any evader, the mean over the evaders of each mean, and the
+  * time of the last capture; distances are to the nearest pursuer, efforts are summed over a side. In a team
+  * without sides all vehicles count, with the distance to the nearest other, and the effort is that of the
+  * evaders. One per episode.
+  *
+  * @param captureRadiusM distance at which an evader is captured
   */
-final class ScoredRollout(
-    engagement: Engagement,
-    timing: LoopTiming,
-    link: Delays,
-    model: VelocityResponse
-):
-  private val rollout  = Rollout(engagement, timing, link, model)
-  private val all      = engagement.roles.indices.toVector
-  private val evaders  = all.filter(engagement.roles(_) == Role.Evader)
-  private val pursuers = all.filter(engagement.roles(_) == Role.Pursuer)
-  private val judged   = if evaders.nonEmpty then evaders else all
+class Scoring(engagement: Engagement, timing: LoopTiming, captureRadiusM: Double = 0.0) extends LoopObserver:
+  private val vehicles = engagement.roles.indices.toVector
+  private val evaders  = vehicles.filter(engagement.roles(_) == Role.Evader)
+  private val pursuers = vehicles.filter(engagement.roles(_) == Role.Pursuer)
+  private val judged   = if evaders.nonEmpty then evaders else vehicles
   private val last10s  = Rollout.last10sFromS(engagement.durationS, timing.periodS)
-  private var tallies  = judged.map(_ => Score())
+  private val tallies  = judged.map(_ => Score(captureRadiusM, last10s))
+  private val places   = Array.ofDim[(Double, Double)](vehicles.size)
 
-  private def against(one: Int) = if evaders.nonEmpty then pursuers else all.filter(_ != one)
+  private def against(one: Int) = if evaders.nonEmpty then pursuers else vehicles.filter(_ != one)
 
-  /** @param captureRadiusM distance at which an evader is captured */
-  def fly(
-      worldKey: Int,
-      captureRadiusM: Double = 0.0,
-      observer: LoopObserver = LoopObserver.Nobody,
-      sensorSeed: Option[Long] = None
-  ): EpisodeOutcome =
-    tallies = judged.map(_ => Score(captureRadiusM, last10s))
-    rollout.fly(worldKey, Scoring(observer), sensorSeed)
-    outcome
+  override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
+    places(vehicle) = (x, y)
+    if vehicle == vehicles.last then
+      for (evader, tally) <- judged.zip(tallies) do
+        val (atX, atY) = places(evader)
+        val distances  =
+          against(evader).map(other => StrictMath.hypot(atX - places(other)._1, atY - places(other)._2))
+        tally.add(timeS, distances.minOption.getOrElse(Double.PositiveInfinity))
 
-  private def outcome =
-    import rollout.controllers
+  /** @param flown the rollout whose last episode this observed */
+  def outcome(flown: Rollout): EpisodeOutcome =
+    import flown.controllers
     val each    = evaderOutcomes
     val nearest = each.minBy(_.minDistanceM)
     EpisodeOutcome(
@@ -85,46 +79,30 @@ final class ScoredRollout(
       controllers.map(_.skipped).sum
     )
 
-  /** The outcomes of the last episode, one for each evader in the engagement's order; in a team without
-    * sides, one for each vehicle.
-    */
+  /** One for each evader in the engagement's order; in a team without sides, one for each vehicle. */
   def evaderOutcomes: Vector[EvaderOutcome] = tallies.map(_.outcome)
 
-  private final class Scoring(of: LoopObserver) extends LoopObserver:
-    private val places = Array.ofDim[(Double, Double)](all.size)
+/** A [[Rollout]] with the outcome of each episode. */
+final class ScoredRollout(
+    engagement: Engagement,
+    timing: LoopTiming,
+    link: Delays,
+    model: VelocityResponse
+):
+  private val rollout = Rollout(engagement, timing, link, model)
+  private var scoring = Scoring(engagement, timing)
 
-    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
-      of.scored(timeS, vehicle, x, y, z)
-      places(vehicle) = (x, y)
-      if vehicle == all.last then
-        for (evader, tally) <- judged.zip(tallies) do
-          val (atX, atY) = places(evader)
-          val distances  =
-            against(evader).map(other => StrictMath.hypot(atX - places(other)._1, atY - places(other)._2))
-          tally.add(timeS, distances.minOption.getOrElse(Double.PositiveInfinity))
+  def fly(worldKey: Int, captureRadiusM: Double = 0.0): EpisodeOutcome =
+    scoring = Scoring(engagement, timing, captureRadiusM)
+    rollout.fly(worldKey, scoring)
+    scoring.outcome(rollout)
 
-    override def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double, z: Double): Unit =
-      of.read(vehicle, number, atNs, x, y, z)
-    override def decided(vehicle: Int, atNs: Long, elapsedS: Double, upon: Grounds): Unit =
-      of.decided(vehicle, atNs, elapsedS, upon)
-    override def entered(
-        vehicle: Int,
-        question: Int,
-        atNs: Long,
-        validAtNs: Long,
-        legs: => Vector[Leg]
-    ): Unit =
-      of.entered(vehicle, question, atNs, validAtNs, legs)
-    override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit =
-      of.commanded(vehicle, number, atNs, action)
-    override def acts(vehicle: Int, number: Int, atNs: Long): Unit = of.acts(vehicle, number, atNs)
-    override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
-      of.exposed(vehicle, number, atNs, image)
-    override def recognised(vehicle: Int, image: Int, atNs: Long): Unit = of.recognised(vehicle, image, atNs)
+  /** The outcomes of the last episode. */
+  def evaderOutcomes: Vector[EvaderOutcome] = scoring.evaderOutcomes
 
 /** Accumulates the distances of an episode into its outcome. */
-private final class Score(captureRadiusM: Double = 0.0, last10sFromS: Double = 0.0):
-  var count                = 0
+private final class Score(captureRadiusM: Double = 0.0, last10sFromS: Double):
+  private var count        = 0
   private var least        = Double.PositiveInfinity
   private var leastAt      = 0.0
   private var sum, lastSum = 0.0

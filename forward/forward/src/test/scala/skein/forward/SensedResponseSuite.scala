@@ -20,7 +20,7 @@ class SensedResponseSuite extends munit.FunSuite:
 
   private def flown(timing: LoopTiming, model: VelocityResponse): Told =
     val told = Told()
-    val _    = rollout(timing, model).fly(3, observer = told)
+    Rollout(Pair.paper.engagement, timing, DelayTable.vpn, model).fly(3, observer = told)
     told
 
   test("readings have the stated errors, and scores are of the truth"):

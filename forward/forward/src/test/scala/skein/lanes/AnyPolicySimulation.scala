@@ -146,14 +146,8 @@ object AnyPolicySimulation:
   private def heading(seen: Observation, way: Vector3, by: Double = 0) =
     Action.Along(Radians(StrictMath.atan2(way.y, way.x) + by), seen.cruise, seen.startDown)
 
-  trait Forgetful extends Policy:
-    type Memory = Unit
-    def start: Unit = ()
-    def action(seen: Observation): Action
-    final def choose(seen: Observation, memory: Unit): (Action, Unit) = (action(seen), ())
-
   // As examples/chase has it.
-  case object Chase extends Forgetful:
+  case object Chase extends Policy.Memoryless:
     def action(seen: Observation): Action = heading(seen, towards(seen, seen.opponent))
 
   final case class Phase(angle: Double, isLeft: Boolean)
@@ -166,18 +160,18 @@ object AnyPolicySimulation:
         if angle.abs > 0.5 then Phase(angle.min(0.5).max(-0.5), !memory.isLeft) else memory.copy(angle)
       (heading(seen, towards(seen, seen.opponent) * -1, next.angle), next)
 
-  final case class Circling(rate: Double) extends Forgetful:
+  final case class Circling(rate: Double) extends Policy.Memoryless:
     def action(seen: Observation): Action =
       Action.Along(Radians(rate * seen.time.toSeconds), MetresPerSecond(5), seen.startDown)
 
-  case object Ages extends Forgetful:
+  case object Ages extends Policy.Memoryless:
     def action(seen: Observation): Action =
       val other = seen.vehicles(seen.opponent)
       val late  = if other.age > Span.ofMillis(200) then Span.ofMillis(200) else other.age
       val ahead = other.kinematics.velocityNed * (late + seen.actsIn).toSeconds
       heading(seen, towards(seen, seen.opponent) + ahead, seen.own.age.toSeconds)
 
-  case object Mirror extends Forgetful:
+  case object Mirror extends Policy.Memoryless:
     def action(seen: Observation): Action =
       val (other, own) = (seen.headings(seen.opponent).value, seen.headings(seen.self).value)
       val way          = towards(seen, seen.opponent)
@@ -196,29 +190,29 @@ object AnyPolicySimulation:
       val mean = next.map(_ - next.last).sum / next.size
       (heading(seen, way, 0.2 * mean.max(-1).min(1)), next)
 
-  case object Turning extends Forgetful:
+  case object Turning extends Policy.Memoryless:
     def action(seen: Observation): Action =
       val way = towards(seen, seen.opponent)
       Action.VelocityAt(way.x / 5, way.y / 5, seen.startDown, Yaw.Forward)
 
-  case object Upwards extends Forgetful:
+  case object Upwards extends Policy.Memoryless:
     def action(seen: Observation): Action =
       val own = seen.own.kinematics.positionNed
       Action.VelocityAt(own.z / 5, 1, seen.startDown)
 
-  case object Landing extends Forgetful:
+  case object Landing extends Policy.Memoryless:
     def action(seen: Observation): Action = Action.Land
 
-  final case class Higher(downM: Double) extends Forgetful:
+  final case class Higher(downM: Double) extends Policy.Memoryless:
     def action(seen: Observation): Action = Action.VelocityAt(1, 2, Metres(downM))
 
-  case object Halving extends Forgetful:
+  case object Halving extends Policy.Memoryless:
     def action(seen: Observation): Action =
       var north = seen.own.kinematics.positionNed.x
       while north > 1 do north /= 2
       Action.VelocityAt(north, 1, seen.startDown)
 
-  case object Promising extends Forgetful:
+  case object Promising extends Policy.Memoryless:
     override def isPlanar: Boolean        = true
     def action(seen: Observation): Action =
       if seen.decisions > 20 then Action.Land else heading(seen, towards(seen, seen.opponent))

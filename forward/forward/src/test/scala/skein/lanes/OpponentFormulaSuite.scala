@@ -55,7 +55,7 @@ class OpponentFormulaSuite extends munit.FunSuite:
 
 object OpponentFormulaSuite:
   /** Turns to the side on which its opponent is, which it finds by vectors. */
-  final case class Turning(rateRadPerS: Double) extends AnyPolicySimulation.Forgetful:
+  final case class Turning(rateRadPerS: Double) extends Policy.Memoryless:
     def action(seen: Observation): Action =
       val way   = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
       val own   = seen.headings(seen.self).value
@@ -67,7 +67,7 @@ object OpponentFormulaSuite:
       Action.Along(Radians(own + side * (rateRadPerS * seen.elapsed.toSeconds)), seen.cruise, seen.startDown)
 
   /** Flies to the origin. */
-  final case class Homing(mps: Option[Double]) extends AnyPolicySimulation.Forgetful:
+  final case class Homing(mps: Option[Double]) extends Policy.Memoryless:
     def action(seen: Observation): Action =
       val own   = seen.own.kinematics.positionNed
       val speed = mps.fold(seen.cruise)(MetresPerSecond(_))

@@ -30,11 +30,12 @@ private[skein] class PairAgreement(
   def check(what: String, worlds: Seq[Int], atLeast: Int = 1)(using munit.Location): Unit =
     val agreement = Agreement()
     for world <- worlds do
-      val logs   = policies.map(of => Log(of(world)))
-      val events = Events()
-      val scalar = duel.copy(duel.pursuer.copy(policy = logs(1)), duel.evader.copy(policy = logs(0)))
-      val came   =
-        ScoredRollout(scalar.engagement, timing, link(world), model).fly(key(world), captureM, events)
+      val logs    = policies.map(of => Log(of(world)))
+      val scalar  = duel.copy(duel.pursuer.copy(policy = logs(1)), duel.evader.copy(policy = logs(0)))
+      val events  = Events(scalar.engagement, timing, captureM)
+      val rollout = Rollout(scalar.engagement, timing, link(world), model)
+      rollout.fly(key(world), events)
+      val came = events.outcome(rollout)
       // The errors of directions so far, each within its bound.
       var off   = 0.0
       val first = events.all.iterator
@@ -251,7 +252,8 @@ private[skein] object PairAgreement:
   /** The scalar engine's decisions and observations in order; and the distance of the two vehicles, once a
     * period.
     */
-  final class Events extends LoopObserver:
+  final class Events(of: Engagement, timing: LoopTiming, captureM: Double)
+      extends Scoring(of, timing, captureM):
     val all: ArrayBuffer[Event]                  = ArrayBuffer.empty
     val distances: ArrayBuffer[(Double, Double)] = ArrayBuffer.empty
     private val decisions                        = Array(0, 0)
@@ -267,6 +269,7 @@ private[skein] object PairAgreement:
       looks += 1
 
     override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
+      super.scored(timeS, vehicle, x, y, z)
       if vehicle == 0 then
         x0 = x; y0 = y
       else distances += timeS -> math.hypot(x - x0, y - y0)

@@ -129,8 +129,7 @@ final class Pass(widths: Vector[Int], val rows: Int):
         from * outs
       )
       if layer < layers - 1 then
-        val end = until * outs
-        eachFrom(from * outs, end): i =>
+        eachFrom(from * outs, until * outs): i =>
           out(i) = Math.max(out(i), 0f)
 
   /** Computes derivatives after [[forward]].
@@ -173,8 +172,7 @@ final class Pass(widths: Vector[Int], val rows: Int):
       if layer > 0 then
         toInputs(network, layer, from, until)
         val (x, into) = (activations(layer), errors(layer))
-        val end       = until * widths(layer)
-        eachFrom(from * widths(layer), end): i =>
+        eachFrom(from * widths(layer), until * widths(layer)): i =>
           if x(i) <= 0 then into(i) = 0
       layer -= 1
 

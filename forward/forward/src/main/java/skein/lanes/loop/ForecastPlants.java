@@ -119,7 +119,7 @@ final class ForecastPlants implements ForecastVehicles {
   }
 
   private int read() {
-    return lanes.inSpace() ? LaneObservation.IN_SPACE : LaneObservation.READ;
+    return LaneObservation.count(true, lanes.inSpace());
   }
 
   /** Corrects the simulated state with a reading. */

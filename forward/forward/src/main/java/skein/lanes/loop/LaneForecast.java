@@ -44,7 +44,7 @@ public final class LaneForecast {
     for (int v = 0; v < count; v++) tracks[v] = new ForecastTrack(periodS, deadTimesS[v], inSpace);
     vehicles = new ForecastVehicles[count];
     read = new LaneVehicles[count];
-    predicted = new float[count][(inSpace ? LaneObservation.IN_SPACE : LaneObservation.READ) * WORLDS];
+    predicted = new float[count][LaneObservation.count(true, inSpace) * WORLDS];
   }
 
   /** Sets the model that predicts a vehicle, and the vehicles that its readings come from. */

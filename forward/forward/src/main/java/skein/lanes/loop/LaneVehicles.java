@@ -12,6 +12,7 @@ import jdk.incubator.vector.VectorMask;
 import skein.forward.RolloutAgent;
 import skein.lanes.plant.LaneSensors;
 import skein.lanes.policy.Directions;
+import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 import skein.lanes.policy.VehicleNumbers;
 import skein.vehicle.SensorNoise;
@@ -59,7 +60,7 @@ public abstract class LaneVehicles {
   /** @param own number of the subclass's floats per world, from {@link #OWN} on */
   LaneVehicles(RolloutAgent agent, int own, boolean inSpace) {
     this.inSpace = inSpace;
-    kept = new float[(inSpace ? 6 : 4) * WORLDS];
+    kept = new float[LaneObservation.count(true, inSpace) * WORLDS];
     state = new float[OWN + own * WORLDS];
     for (int world = 0; world < WORLDS; world++) place(world, agent);
   }
@@ -139,7 +140,7 @@ public abstract class LaneVehicles {
           state[SEEN_Z + i] = startZ[i];
           state[SEEN_VZ + i] = 0f;
         }
-    for (int read = 0; read < LaneSensors.count(withVelocity, inSpace); read++)
+    for (int read = 0; read < LaneObservation.count(withVelocity, inSpace); read++)
       sensors.add(LaneSensors.componentOf(read), sensedNs, from, to, state, SEEN_X + read * WORLDS);
   }
 

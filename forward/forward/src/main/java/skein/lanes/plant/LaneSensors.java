@@ -23,7 +23,7 @@ public final class LaneSensors {
   private static final int WORLDS = LanePolicy.WORLDS;
 
   /** Components of a reading: position and velocity, each north, east and down. */
-  public static final int NORTH = 0, EAST = 1, DOWN = 2, NORTH_MPS = 3, EAST_MPS = 4, DOWN_MPS = 5;
+  private static final int NORTH = 0, EAST = 1, DOWN = 2, NORTH_MPS = 3, EAST_MPS = 4, DOWN_MPS = 5;
 
   private static final int COMPONENTS = 6, AXES = 3;
 
@@ -32,12 +32,6 @@ public final class LaneSensors {
   /** The error of a component of readings, in the order of {@link LaneObservation#X} and the following. */
   public static int componentOf(int read) {
     return OF_READINGS[read];
-  }
-
-  /** Number of components that are read, the first of {@link #componentOf}. */
-  public static int count(boolean withVelocity, boolean inSpace) {
-    // In space, velocities are always read.
-    return inSpace ? LaneObservation.IN_SPACE : withVelocity ? LaneObservation.READ : LaneObservation.VX;
   }
 
   private static final long GAMMA = SplitMix64.Gamma();

@@ -1,6 +1,5 @@
 package skein.lanes.policy;
 
-
 import java.util.Arrays;
 import skein.simd.LaneFunction;
 
@@ -19,7 +18,13 @@ public final class LaneObservation {
   public static final int READ = 4;
 
   /** Rows of a reading in space: position and velocity down follow those rows. */
-  public static final int DOWN = 4, IN_SPACE = 6;
+  public static final int DOWN = 4, DOWN_MPS = 5, IN_SPACE = 6;
+
+  /** Number of rows that are read, from {@link #X} on. */
+  public static int count(boolean withVelocity, boolean inSpace) {
+    // In space, velocities are always read.
+    return inSpace ? IN_SPACE : withVelocity ? READ : VX;
+  }
 
   private static final float[] ZEROS = new float[WORLDS];
 

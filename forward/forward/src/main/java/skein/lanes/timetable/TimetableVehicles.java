@@ -67,7 +67,7 @@ public abstract class TimetableVehicles {
    */
   public final void start(int readings, int worlds) {
     if (seen[LaneObservation.X].length < readings * WORLDS)
-      for (int component = 0; component < (inSpace ? LaneObservation.IN_SPACE : LaneObservation.READ); component++)
+      for (int component = 0; component < LaneObservation.count(true, inSpace); component++)
         seen[component] = new float[readings * WORLDS];
     start(worlds);
     if (predicted != null) predicted.start(worlds, startZ);
@@ -113,7 +113,7 @@ public abstract class TimetableVehicles {
    */
   final void sense(long atNs, int into, boolean withVelocity) {
     sensors.at(atNs);
-    for (int read = 0; read < LaneSensors.count(withVelocity, inSpace); read++)
+    for (int read = 0; read < LaneObservation.count(withVelocity, inSpace); read++)
       sensors.add(LaneSensors.componentOf(read), seen[read], into);
   }
 

@@ -67,11 +67,9 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
   def step(): Unit = fly(1)
 
   def fly(count: Int): Unit =
-    var left = count
-    while left > 0 do
+    eachBelow(count): _ =>
       steps(if isOther then 1 else 0)()
       isOther = !isOther
-      left -= 1
 
   def positionNed(place: Int): Vector3 = Vector3(state(X + place), state(Y + place), state(Z + place))
   def velocityNed(place: Int): Vector3 = Vector3(state(VX + place), state(VY + place), state(VZ + place))

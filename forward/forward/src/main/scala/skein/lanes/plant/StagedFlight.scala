@@ -99,12 +99,10 @@ private[lanes] final class StagedFlight(
     *   and the values of the time since the last step
     */
   def flyTo(time: Array[Float], at: Int): Unit =
-    var steps = time(at).toInt
-    while steps > 0 do
+    eachBelow(time(at).toInt): _ =>
       tell(wholeStep, 0)
       moving.goOn()
       turnOver()
-      steps -= 1
     tell(time, at + 1)
 
   private def tell(time: Array[Float], at: Int): Unit =
@@ -122,9 +120,8 @@ private[lanes] final class StagedFlight(
     * @param into index of the first world
     */
   def look(seen: Array[Array[Float]], into: Int, withVelocity: Boolean): Unit =
-    val moves = withVelocity || lanes.inSpace
-    val look  = if moves then moving.look else moving.position
-    eachBelow(if moves then stages.look.outputs else LaneObservation.VX)(i => look.output(i, seen(i), into))
+    val look = if withVelocity || lanes.inSpace then moving.look else moving.position
+    eachBelow(LaneObservation.count(withVelocity, lanes.inSpace))(i => look.output(i, seen(i), into))
     look()
 
   /** Writes the present state in rows.

@@ -24,7 +24,7 @@ private[lanes] final class TeamLanes private (
 
   val count: Int = formulas.size
 
-  private val view  = (if inSpace then LaneObservation.IN_SPACE else LaneObservation.DOWN) * count
+  private val view  = LaneObservation.count(true, inSpace) * count
   private val trace = Trace(MostOperations)
 
   /** What further inputs stand for, with the vehicle that has them; -1 for values shared by all. */
@@ -59,7 +59,7 @@ private[lanes] final class TeamLanes private (
           else own(Source.Altitude(vehicle))
         case PolicyInput.Position(vehicle, axis) => trace.input(axis * count + vehicle)
         case PolicyInput.Velocity(vehicle, 2)    =>
-          if inSpace then trace.input((LaneObservation.DOWN + 1) * count + vehicle) else trace.const(0)
+          if inSpace then trace.input(LaneObservation.DOWN_MPS * count + vehicle) else trace.const(0)
         case PolicyInput.Velocity(vehicle, axis) => trace.input((2 + axis) * count + vehicle)
         case PolicyInput.Heading(vehicle)        =>
           val (cos, sin) = direction(vehicle)

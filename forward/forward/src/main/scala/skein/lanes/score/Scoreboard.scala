@@ -33,6 +33,9 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   /** How many of [[renewed]] have restarted. */
   private var begun = 0
 
+  /** The time up to which positions are scored, s. */
+  var untilS: Float = Float.PositiveInfinity
+
   for case (OfMoment.FirstWithin(limit), number) <- judged.map(_.reduction).zipWithIndex do
     this.limit(number, limit.toFloat)
 
@@ -69,7 +72,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
           case Source.Reading(vehicle, field)             => (vehicle, field)
           case Source.Velocity(vehicle, axis) if axis < 2 => (vehicle, 2 + axis)
           case Source.Altitude(vehicle) if inSpace        => (vehicle, LaneObservation.DOWN)
-          case Source.Velocity(vehicle, _) if inSpace     => (vehicle, LaneObservation.DOWN + 1)
+          case Source.Velocity(vehicle, _) if inSpace     => (vehicle, LaneObservation.DOWN_MPS)
       ,
       shared
     )
@@ -111,9 +114,6 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   def forget(number: Int): Unit =
     counts(number) = 0
     for place <- lanes.places(number) until lanes.places(number + 1) do begin(place)
-
-  /** The time up to which positions are scored, s. */
-  var untilS: Float = Float.PositiveInfinity
 
   /** Resets one world's score. The count of values goes on, so final means and standard deviations are then
     * wrong.

@@ -26,7 +26,7 @@ private[lanes] final class PredictedPlants(
   private val count   = lanes.count
   private val restZ   = Array.ofDim[Float](WORLDS)
 
-  private val components = if lanes.inSpace then LaneObservation.IN_SPACE else LaneObservation.READ
+  private val components = LaneObservation.count(true, lanes.inSpace)
 
   /** The state at each reading, by the reading's slot; used only if readings lack a part of the state. */
   private var states = Array.emptyFloatArray

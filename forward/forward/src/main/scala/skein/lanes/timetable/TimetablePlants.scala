@@ -13,7 +13,7 @@ import skein.lanes.policy.{Directions, LaneObservation}
   */
 private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLanes, amongClimbers: Boolean)
     extends TimetableVehicles(agent, amongClimbers):
-  import LaneObservation.{DOWN, VX, VY, X, Y}
+  import LaneObservation.{DOWN, DOWN_MPS, VX, VY, X, Y}
   import TimetableVehicles.WORLDS
   private val flight      = StagedFlight(lanes, agent.speed, startX, startY)
   private val resting     = lanes.resting
@@ -46,7 +46,7 @@ private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLane
 
   private def lookLevel(into: Int): Unit =
     System.arraycopy(startZ, 0, seen(DOWN), into, WORLDS)
-    Arrays.fill(seen(DOWN + 1), into, into + WORLDS, 0f)
+    Arrays.fill(seen(DOWN_MPS), into, into + WORLDS, 0f)
 
   def act(times: Array[Float], at: Int, commanded: Directions, from: Int): Unit =
     if isCommanded then
