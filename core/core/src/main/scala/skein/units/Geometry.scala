@@ -44,7 +44,10 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
       frd.z + w * tz + x * ty - y * tx
     )
 
-  def toBody(ned: Vector3): Vector3 = Quaternion(w, -x, -y, -z).toWorld(ned)
+  def toBody(ned: Vector3): Vector3 = inverse.toWorld(ned)
+
+  /** The rotation back: from world NED to body FRD. */
+  def inverse: Quaternion = Quaternion(w, -x, -y, -z)
 
   /** The rotation that consists of `inner`, followed by this one. */
   def *(inner: Quaternion): Quaternion = Quaternion(

@@ -223,7 +223,7 @@ final case class Autopilot(
               heard.next.copy(
                 anchor = goal,
                 cruise = Some(order.numbers(0).min(Parameters.Cruise.most)).filter(_ > 0).orElse(cruise),
-                yaw = if heading.isFinite then Yaw.Towards(Radians(heading)) else Yaw.Still
+                yaw = towards(heading)
               )
             )
           )
@@ -374,9 +374,11 @@ final case class Autopilot(
               case Command.Land => to(Mission.place(item, home, anchor).copy(z = here.z), yawOf(item))
               case _            => to(anchor, yaw))
 
-  private def yawOf(item: MissionItemInt): Yaw =
-    if item.param4.isFinite then Yaw.Towards(Radians(math.toRadians(item.param4)))
-    else Yaw.Still
+  private def yawOf(item: MissionItemInt): Yaw = towards(math.toRadians(item.param4))
+
+  /** A turn to this heading; none where a message leaves it out. */
+  private def towards(headingRad: Double): Yaw =
+    if headingRad.isFinite then Yaw.Towards(Radians(headingRad)) else Yaw.Still
 
 object Autopilot:
   /** The result of a message or of passing time.

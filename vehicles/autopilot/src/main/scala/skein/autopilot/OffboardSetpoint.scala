@@ -139,15 +139,14 @@ object OffboardSetpoint:
     else if numbers.exists(number => !(math.abs(number) <= Most)) then
       Left("setpoint: expected finite numbers, got others")
     else
+      val heading = turn.map(rad => Yaw.Towards(Radians(rad)))
       Right(OffboardSetpoint.Move(
         place(0),
         place(1),
         place(2),
         (velocity(0), velocity(1), velocity(2)),
         inBody,
-        turn.map(heading => Yaw.Towards(Radians(heading))).orElse(rate.map(Yaw.Turning(_))).getOrElse(
-          Yaw.Still
-        )
+        heading.orElse(rate.map(Yaw.Turning(_))).getOrElse(Yaw.Still)
       ))
 
   extension (move: OffboardSetpoint.Move)

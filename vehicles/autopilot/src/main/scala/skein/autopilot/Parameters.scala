@@ -38,7 +38,7 @@ final case class Parameters(values: Map[String, Double] = Parameters.defaults):
       value,
       if parameter.isInteger then Int32 else Real32,
       known.size,
-      known.indexOf(parameter)
+      parameter.ordinal
     )
 
 /** A parameter with its default and range.

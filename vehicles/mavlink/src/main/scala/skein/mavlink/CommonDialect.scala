@@ -74,3 +74,5 @@ object CommonDialect:
     val YawRate  = 2048
     val Position = X | Y | Z
     val Velocity = Vx | Vy | Vz
+
+    val Acceleration = 64 | 128 | 256

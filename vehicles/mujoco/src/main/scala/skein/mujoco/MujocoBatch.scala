@@ -70,8 +70,8 @@ private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: In
     * steps × its size).
     */
   def rollout(steps: Int, controls: MemorySegment): Unit =
-    val (all, none) = (MemorySegment.NULL, MemorySegment.NULL)
-    check(calls.rollout.invokeExact(batch, all, 0, steps, controls, Controls, none, 0): Int)
+    val none = MemorySegment.NULL
+    check(calls.rollout.invokeExact(batch, none, 0, steps, controls, Controls, none, 0): Int)
 
   private def check(failed: Int): Unit =
     if failed > 0 then

@@ -1,5 +1,6 @@
 package skein.offboard
 
+import skein.mavlink.CommonDialect.Ignore.Acceleration
 import skein.mavlink.CommonDialect.{Frame, Ignore}
 import skein.mavlink.{Message, SetAttitudeTarget, SetPositionTargetLocalNed}
 import skein.policy.{Action, Yaw}
@@ -41,9 +42,8 @@ private[offboard] object Setpoints:
       )
     case Action.Hover | Action.Land => None
 
-  private val Acceleration = 64 | 128 | 256
-  private val NearM        = 1.0
-  private val ForwardMps   = 0.5
+  private val NearM      = 1.0
+  private val ForwardMps = 0.5
 
   /** The type mask's bits for yaw, the yaw, rad, and the yaw rate, rad/s. A set bit makes the autopilot
     * ignore its field.

@@ -107,9 +107,6 @@ private[simulator] object CameraMethods extends MethodList:
     case (simulation, (camera, kind, name, external)) =>
       detecting(simulation, camera, kind, name, external)(filter => Right(filter.copy(meshes = Set.empty)))
 
-  /** Number of image types, which count from 0. */
-  private val ImageTypes = 10
-
   private def get(method: String)(read: Camera => CallOutcome): Unit =
     many[(String, String, Boolean)](method):
       case (simulation, (camera, name, external)) =>
@@ -159,10 +156,10 @@ private[simulator] object CameraMethods extends MethodList:
       change: DetectionFilter => Either[String, DetectionFilter]
   ): CallOutcome =
     of(simulation, camera, name, external): (index, camera) =>
-      if kind < 0 || kind >= ImageTypes then
-        CallOutcome.Threw(s"an image type is 0 to ${ImageTypes - 1}, not $kind")
-      else
-        change(simulation.cameras.detection(index, camera, kind)).fold(
+      Shots
+        .typeOf(kind)
+        .flatMap(_ => change(simulation.cameras.detection(index, camera, kind)))
+        .fold(
           CallOutcome.Threw(_),
           filter => done(simulation.cameras.setDetection(index, camera, kind, filter))
         )

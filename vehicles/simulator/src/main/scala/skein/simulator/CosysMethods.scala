@@ -58,13 +58,11 @@ private[simulator] object CosysMethods extends MethodList:
   /** Variants of functions that AirSim's clients call, too: camera functions lack `external` and have an
     * annotation's name where an image type is named; object poses have an argument `ned`.
     */
-  def forms: Seq[ServerMethod] =
-    CameraMethods.all.map: method =>
-      if OfImages(method.name) then method.closing(false, Some(summon[Argument[String]]))
-      else method.closing(false)
-    ++ ObjectForms.all
+  def forms: Seq[ServerMethod] = Forms.all
 
-  private object ObjectForms extends MethodList:
+  private object Forms extends MethodList:
+    for method <- CameraMethods.all do
+      add(method.closing(false, Option.when(OfImages(method.name))(summon[Argument[String]])))
     many[(String, Boolean)]("simGetObjectPose"):
       case (simulation, (name, ned)) => inNed(ned)(answer(simulation.objects.poseOf(name)))
 

@@ -3,7 +3,6 @@ package skein.simulator
 import skein.airsim.wire.*
 import skein.scene.render.{Extent, Renderer}
 import skein.scene.Placement
-import skein.units.Quaternion
 
 /** A camera's detections: the filtered objects of which at least one pixel is visible. */
 private[simulator] object Detections:
@@ -41,5 +40,4 @@ private[simulator] object Detections:
   )
 
   private def relative(thing: Placement, camera: Placement): Pose =
-    val q = camera.orientation
-    Pose(camera.inside(thing.position), Quaternion(q.w, -q.x, -q.y, -q.z) * thing.orientation)
+    Pose(camera.inside(thing.position), camera.orientation.inverse * thing.orientation)

@@ -29,8 +29,9 @@ private[simulator] final class FollowedPlan:
   def turn(vehicle: SimulatedMultirotor, now: Instant): Unit =
     for next <- buffer.due(now) if !running.exists(_.order eq next.action) do
       running = Some(FollowedPlan.Running(next.action, next.action(vehicle).toOption, next.at))
-    val ended = running.flatMap(_.move).map: move =>
-      move.turn(vehicle, now.since(running.fold(now)(_.startedAt))).performed(vehicle, now).isDefined
+    val ended =
+      for one <- running; move <- one.move
+      yield move.turn(vehicle, now.since(one.startedAt)).performed(vehicle, now).isDefined
     if ended.contains(true) then running = running.map(_.copy(move = None))
     val again = Option.when(ended.contains(false))(now + PathFollowing.Period)
     due = (again ++ buffer.nextAfter(now)).minOption

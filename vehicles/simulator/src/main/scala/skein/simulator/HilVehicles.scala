@@ -50,7 +50,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
     one.vehicle.flyBy(Some(one.interface.rotors))
 
   def take(): Vector[(channel: Long, datagrams: Vector[Array[Byte]])] =
-    out.dequeueAll(_ => true).toVector
+    out.removeAll().toVector
 
   def nextDue: Option[Instant] =
     if isWaiting then None else stop(world.now)
@@ -97,7 +97,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
     SensorTruth(
       now,
       up,
-      vehicle.truth(now).motion,
+      vehicle.motionAt(now),
       // Physics does not move a vehicle that stands on the ground.
       if state.grounded then Vector3.Zero else state.accelerationNed,
       place,

@@ -51,7 +51,7 @@ private[simulator] final class InProcess(
     val seen = vehicle.sensed(at)
     Option.unless(seen.isMissing)(SeenVehicle(
       vehicle.settings.name,
-      seen.motion.copy(positionNed = vehicle.settings.startNed + seen.motion.positionNed),
+      vehicle.inWorld(seen.motion),
       vehicle.accelerationNed,
       vehicle.home.locate(seen.motion.positionNed)
     ))
@@ -75,11 +75,10 @@ private[simulator] final class InProcess(
 
     private def setpoint(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint] =
       ordered.map: (action, _) =>
-        val now    = vehicle.worldMotion(at)
+        val motion = vehicle.motionAt(at)
+        val now    = vehicle.inWorld(motion)
         val chosen = if vehicle.isGrounded then lifting(action(now)) else action(now)
-        ActionGuidance.of(own(chosen, vehicle.settings.startNed)).setpoint(
-          now.copy(positionNed = vehicle.positionAt(at))
-        )
+        ActionGuidance.of(own(chosen, vehicle.settings.startNed)).setpoint(motion)
 
     /** Straight up at first, at [[InProcess.LiftMps]] or more: on the ground AirSim's controller can neither
       * tilt nor turn, and what it gives to these is missing in the lift.

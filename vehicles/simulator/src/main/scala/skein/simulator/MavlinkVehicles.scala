@@ -80,7 +80,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
         VehicleMotion(world.now.since(startedAt), seen.motion, vehicle.flying)
 
     private def motionAt(at: Instant): VehicleMotion =
-      VehicleMotion(at.since(startedAt), vehicle.truth(at).motion, vehicle.flying)
+      VehicleMotion(at.since(startedAt), vehicle.motionAt(at), vehicle.flying)
 
     def turn(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint] =
       val wasArmed          = decided.isArmed

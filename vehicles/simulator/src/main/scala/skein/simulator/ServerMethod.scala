@@ -46,7 +46,7 @@ final private[simulator] class ServerMethod(
     *
     * @param last the value that the function receives instead of that argument
     */
-  def closing(last: Any, read: Option[Argument[?]] = None): ServerMethod =
+  def closing(last: Any, read: Option[Argument[?]]): ServerMethod =
     def own(values: Tuple): Tuple = Tuple.fromArray(values.toArray.take(arity - 1).map(x => x: Any) :+ last)
     ServerMethod(name, arguments.init ++ read, (simulation, values) => run(simulation, own(values)))
 

@@ -52,15 +52,16 @@ private[simulator] object Shots:
 
   def noCamera(name: String): String = s"No camera with name $name exist on vehicle"
 
+  /** AirSim's image type of this number. */
+  def typeOf(imageType: Int): Either[String, ImageKind] =
+    if ImageKind.values.indices.contains(imageType) then Right(ImageKind.fromOrdinal(imageType))
+    else Left(s"an image type is 0 to ${ImageKind.values.length - 1}, not $imageType")
+
   /** The kind that is drawn for AirSim's number of an image type. */
-  def kindOf(imageType: Int): Either[String, Kind] =
-    if imageType < 0 || imageType >= ImageKind.values.length then
-      Left(s"an image type is 0 to ${ImageKind.values.length - 1}, not $imageType")
-    else
-      ImageKind.fromOrdinal(imageType) match
-        case ImageKind.OpticalFlow | ImageKind.OpticalFlowVis =>
-          Left(s"the built-in simulator draws no ${ImageKind.fromOrdinal(imageType)}")
-        case _ => Right(Kind.fromOrdinal(imageType))
+  def kindOf(imageType: Int): Either[String, Kind] = typeOf(imageType).flatMap:
+    case flow @ (ImageKind.OpticalFlow | ImageKind.OpticalFlowVis) =>
+      Left(s"the built-in simulator draws no $flow")
+    case kind => Right(Kind.fromOrdinal(kind.ordinal))
 
   /** The current view through a vehicle's camera. */
   def view(simulation: Simulated, vehicle: Int, camera: String, imageType: Int): View =

@@ -88,12 +88,11 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   def cameras: CameraSet
 
   /** The true motion at `at`, up to one step after the last. */
-  def truth(at: Instant): Sensed = Sensed(
-    Kinematics(positionAt(at), velocityAt(at), orientation, angularVelocityFrd),
-    accelerationNed,
-    angularAccelerationFrd,
-    at
-  )
+  def truth(at: Instant): Sensed = Sensed(motionAt(at), accelerationNed, angularAccelerationFrd, at)
+
+  /** The vehicle's true motion, in its own frame. */
+  def motionAt(at: Instant): Kinematics =
+    Kinematics(positionAt(at), velocityAt(at), orientation, angularVelocityFrd)
 
   /** The motion at `at` as the vehicle's sensors report it. Where they have no reading, it is the last one,
     * or the first one there is.
@@ -114,8 +113,10 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   def worldPosition(at: Instant): Vector3 = settings.startNed + positionAt(at)
 
   /** The vehicle's true motion; its position is one in the world, NED. */
-  def worldMotion(at: Instant): Kinematics =
-    Kinematics(worldPosition(at), velocityAt(at), orientation, angularVelocityFrd)
+  def worldMotion(at: Instant): Kinematics = inWorld(motionAt(at))
+
+  /** A motion in the vehicle's own frame with its position in the world, NED. */
+  def inWorld(own: Kinematics): Kinematics = own.copy(positionNed = settings.startNed + own.positionNed)
 
   /** Contacts with objects of the scene so far, the ground aside. Touches of one object within
     * [[SimulatedVehicle.OneContact]] of each other are one contact.

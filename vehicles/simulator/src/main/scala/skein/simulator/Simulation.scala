@@ -121,8 +121,7 @@ final class Simulation(
       val next     = if running.isEmpty then handover else running.map(end => handover.fold(end)(_.min(end)))
       next.map(_.max(at))
 
-  def takeAnswers(): Seq[SimulatorAnswer] =
-    answers.dequeueAll(_ => true)
+  def takeAnswers(): Seq[SimulatorAnswer] = answers.removeAll()
 
   def isPaused: Boolean = paused && continuing.isEmpty
 

@@ -145,14 +145,16 @@ final class World(
   private[simulator] def isMoving(vehicle: Int): Boolean = moves(vehicle).nonEmpty
 
   /** Takes the moves that have ended since the last call. */
-  def takeEnded(): Seq[Ended] = ended.dequeueAll(_ => true)
+  def takeEnded(): Seq[Ended] = ended.removeAll()
 
   /** Whether [[takeEnded]] would return anything. */
   def hasEnded: Boolean = ended.nonEmpty
 
   /** The earliest time at which the next move can end. */
   def nextEndAt: Option[Instant] =
-    moves.flatten.map(running => running.dueAt.max(running.startedAt + running.move.lastsAtLeast)).minOption
+    moves.iterator.flatten
+      .map(running => running.dueAt.max(running.startedAt + running.move.lastsAtLeast))
+      .minOption
 
   def reset(): Unit =
     vehicles.indices.foreach(cancelMove)
@@ -182,7 +184,8 @@ final class World(
 
   private def scan(carried: Scans.Carried, at: Instant, count: Long): Scan =
     val Scans.Carried(index, name, lidar) = carried
-    val (place, origin)                   = (placeOf(index, at), vehicles(index).settings.startNed)
+    val place                             = placeOf(index, at)
+    val origin                            = vehicles(index).settings.startNed
     val moment                            = Moment(scene, bodies(at))
     // Differs between vehicles, lidars and scans.
     val noise  = SplitMix64.seedOf(SplitMix64.seedOf(index, name.hashCode), count)
