@@ -43,7 +43,7 @@ private[cli] object OutFolder:
     if text.isEmpty then Left(s"$option: expected a folder, got ''")
     else
       val folder = Path.of(text)
-      try
+      FileReason.attempt(why => s"$option: cannot write into the folder $folder: $why"):
         val missing =
           Iterator.iterate(folder.toAbsolutePath)(_.getParent).takeWhile(Files.notExists(_)).toVector
         // One by one: if `gone` is missing, so is `gone/..`, until `gone` is made.
@@ -51,10 +51,7 @@ private[cli] object OutFolder:
           Files.createDirectories(part)
           fresh.set(part +: fresh.get)
         Files.delete(Files.createTempFile(folder, ".skein", ""))
-        Right(folder)
-      catch
-        case failed: IOException =>
-          Left(s"$option: cannot write into the folder $folder: ${FileReason.of(failed)}")
+        folder
 
   /** A folder name made of the date and time, in seconds. */
   def dated(parent: String): String =
@@ -84,8 +81,8 @@ private[cli] object OutFolder:
     * @return their paths, or Left with the reason in a line
     */
   def write(folder: Path, files: Seq[(String, Array[Byte])]): Either[String, Vector[Path]] =
-    try Right(files.toVector.map((name, bytes) => Files.write(folder.resolve(name), bytes)))
-    catch case failed: IOException => Left(s"cannot write into $folder: ${FileReason.of(failed)}")
+    FileReason.attempt(why => s"cannot write into $folder: $why"):
+      files.toVector.map((name, bytes) => Files.write(folder.resolve(name), bytes))
 
   def text(name: String, text: String): (String, Array[Byte]) = (name, text.getBytes(UTF_8))
 

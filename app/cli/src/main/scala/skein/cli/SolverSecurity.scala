@@ -6,7 +6,7 @@ import java.util.Properties
 import javax.net.ssl.SSLContext
 import mainargs.{ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
-import skein.cluster.{Tls, isLoopback}
+import skein.cluster.Tls
 import skein.kafka.KafkaCertificates
 import skein.settings.SolverChoice
 import skein.units.Expect
@@ -36,7 +36,7 @@ final case class SolverSecurity(
           case Some(folder) => Tls.of(Path.of(folder)).flatMap(_.context).map(Some(_))
           case None         =>
             Either.cond(
-              isLoopback(at),
+              at.isLoopback,
               None,
               s"--tls: expected certificates of both sides where the solver at $at is reached " +
                 "by other machines; ./skein cluster certificates FOLDER makes a lab's. Without " +
@@ -52,7 +52,7 @@ final case class SolverSecurity(
             Left("--tls, --kafka-security: expected one of them; the file says whom to trust, too")
           case (None, None) =>
             Either.cond(
-              isLoopback(broker),
+              broker.isLoopback,
               Map.empty[String, String],
               s"--tls: expected certificates where the Kafka broker at $broker is of " +
                 "another machine; ./skein cluster certificates FOLDER makes a lab's, and " +

@@ -5,7 +5,7 @@ import java.time.LocalTime
 import java.time.format.DateTimeFormatter
 import mainargs.{Flag, ParserForClass, arg}
 import scala.concurrent.duration.DurationLong
-import skein.cluster.{Tls, WorkerNode, WorkerProcesses, isLoopback}
+import skein.cluster.{Tls, WorkerNode, WorkerProcesses}
 import skein.scenario.Scenarios
 import skein.units.{Expect, Span}
 

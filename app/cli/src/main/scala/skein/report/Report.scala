@@ -1,6 +1,5 @@
 package skein.report
 
-import java.io.IOException
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.{Try, Using}
@@ -111,7 +110,7 @@ object Report:
       figures: Vector[Figure],
       isShown: Path => Boolean
   ): Either[String, Output] =
-    try
+    FileReason.attempt(why => s"cannot write the report to $page: $why"):
       val isReplaced = Files.exists(page)
       val folder     = Files.createDirectories(page.resolveSibling("figures"))
       val _          = Files.writeString(page, text)
@@ -120,14 +119,7 @@ object Report:
       val (unpainted, painted) =
         onAllCores(figures)(figure => Png.bytes(figure.drawing).map(figure.name -> _)).partitionMap(identity)
       for (name, bytes) <- painted do Files.write(folder.resolve(s"$name.png"), bytes)
-      Right(Output(
-        page,
-        unpainted.headOption,
-        isReplaced,
-        others(page, isShown),
-        sections.flatMap(_.failure)
-      ))
-    catch case failed: IOException => Left(s"cannot write the report to $page: ${FileReason.of(failed)}")
+      Output(page, unpainted.headOption, isReplaced, others(page, isShown), sections.flatMap(_.failure))
 
   private def others(page: Path, isShown: Path => Boolean): Vector[String] =
     Using.resource(Files.list(page.toAbsolutePath.getParent)): files =>

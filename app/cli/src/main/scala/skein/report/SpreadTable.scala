@@ -14,31 +14,32 @@ object SpreadTable:
   def of(flights: Seq[FlightSummary]): TextTable =
     val truths = Truth.among(flights)
     val groups = flights.groupBy(summary => (summary.name, summary.flight.link))
-    TextTable.of(flights.map(summary => (summary.name, summary.flight.link)).distinct.map(groups))(
-      "<loop"       -> (_.head.name),
-      "<link"       -> (_.head.flight.link),
-      "flights"     -> (group => mean(group).fold(group.size)(_.count).toString),
-      "last 10 s m" -> metres(mean, _.mean),
-      "sd"          -> metres(mean(_).filter(_.count > 1), _.sampleSd),
-      "least"       -> metres(mean, _.least),
-      "most"        -> metres(mean, _.most),
-      "sd within"   -> metres(over(_, _.lastTenSeconds.map(_.sd)), _.mean),
-      "closest m"   -> metres(closest, _.mean),
-      "captured"    -> (closest(_).fold("")(_.sorted.count(_ < PlanTable.CaptureM).toString)),
-      "vs paused"   -> (group =>
-        Distribution.of(group.flatMap(truths.deviation)).fold("")(share =>
+    val rows   = flights.map(summary => (summary.name, summary.flight.link)).distinct.map(groups).map(Row(_))
+    TextTable.of(rows)(
+      "<loop"       -> (_.flights.head.name),
+      "<link"       -> (_.flights.head.flight.link),
+      "flights"     -> (row => row.mean.fold(row.flights.size)(_.count).toString),
+      "last 10 s m" -> (row => metres(row.mean)(_.mean)),
+      "sd"          -> (row => metres(row.mean.filter(_.count > 1))(_.sampleSd)),
+      "least"       -> (row => metres(row.mean)(_.least)),
+      "most"        -> (row => metres(row.mean)(_.most)),
+      "sd within"   -> (row => metres(row.within)(_.mean)),
+      "closest m"   -> (row => metres(row.closest)(_.mean)),
+      "captured"    -> (_.closest.fold("")(_.sorted.count(_ < PlanTable.CaptureM).toString)),
+      "vs paused"   -> (row =>
+        Distribution.of(row.flights.flatMap(truths.deviation)).fold("")(share =>
           s"${(100 * share.mean).signed(1)} %"
         )
       )
     )
 
-  private def metres(of: Seq[FlightSummary] => Option[Distribution], value: Distribution => Double)(
-      group: Seq[FlightSummary]
-  ) = of(group).fold("")(distances => value(distances).fixed(2))
+  private final class Row(val flights: Seq[FlightSummary]):
+    val mean: Option[Distribution]    = over(_.lastTenSeconds.map(_.mean))
+    val within: Option[Distribution]  = over(_.lastTenSeconds.map(_.sd))
+    val closest: Option[Distribution] = over(curve => Some(curve.closest._2))
 
-  private def mean(group: Seq[FlightSummary]) = over(group, _.lastTenSeconds.map(_.mean))
+    private def over(of: DistanceCurve => Option[Double]): Option[Distribution] =
+      Distribution.of(flights.flatMap(_.distance).flatMap(of))
 
-  private def closest(group: Seq[FlightSummary]) = over(group, curve => Some(curve.closest._2))
-
-  private def over(group: Seq[FlightSummary], of: DistanceCurve => Option[Double]): Option[Distribution] =
-    Distribution.of(group.flatMap(_.distance).flatMap(of))
+  private def metres(of: Option[Distribution])(value: Distribution => Double): String =
+    of.fold("")(distances => value(distances).fixed(2))

@@ -98,10 +98,7 @@ object LearnFile:
         learner.save(DataOutputStream(CheckedOutputStream(bytes, sum)))
         DataOutputStream(bytes).writeLong(sum.getValue)
       _ <- onDisk.write(folder, stored)
-      _ <-
-        try
-          Right(Using.resource(Files.newDirectoryStream(folder, "learner-*.bin")):
-            _.forEach(other => if other != file then Files.delete(other)))
-        catch
-          case failed: IOException => Left(s"cannot delete what was before $file: ${FileReason.of(failed)}")
+      _ <- FileReason.attempt(why => s"cannot delete what was before $file: $why"):
+        Using.resource(Files.newDirectoryStream(folder, "learner-*.bin")):
+          _.forEach(other => if other != file then Files.delete(other))
     yield ()

@@ -76,10 +76,9 @@ final case class Coordinator private (
     // If its lease was dropped, a block waits, and its answer may arrive nevertheless.
     val block    = lease.map(_.block).orElse(waiting.again.get(number))
     val accepted = if block.isDefined then 1 else 0
-    val freed    = lease.fold(copy(waiting = waiting.without(number))): held =>
-      held.holders.keys.foldLeft(without(held))(_.forgotten(_, Set(number)))
-    val record = freed.workers.getOrElse(worker, WorkerRecord(0, isHere = false))
-    val told   = record.copy(
+    val freed    = lease.fold(copy(waiting = waiting.without(number)))(without(_))
+    val record   = freed.workers.getOrElse(worker, WorkerRecord(0, isHere = false))
+    val told     = record.copy(
       holds = record.holds - number,
       accepted = record.accepted + accepted,
       repeated = record.repeated + 1 - accepted,
@@ -99,8 +98,7 @@ final case class Coordinator private (
       if seldom.isEmpty then leases.valuesIterator.filter(isOverdue).toVector
       else seldom.iterator.map((_, number) => leases(number)).takeWhile(isOverdue).toVector
     overdue.foldLeft(this): (here, lease) =>
-      val waits = here.returned(lease, here.counts.copy(overdue = here.counts.overdue + 1))
-      lease.holders.keys.foldLeft(waits)(_.forgotten(_, Set(lease.block.number)))
+      here.returned(lease, here.counts.copy(overdue = here.counts.overdue + 1))
 
   /** Drops all blocks; answers that still arrive are repeats. */
   def cancelled: Coordinator = copy(
@@ -136,15 +134,15 @@ final case class Coordinator private (
       )
     )
 
+  /** Ends a lease, also in the records of the workers that have its block. */
   private def without(lease: Lease): Coordinator =
-    copy(leases = leases - lease.block.number, seldom = seldom - lease.place)
+    val number = lease.block.number
+    val freed  = lease.holders.keys.foldLeft(workers): (all, holder) =>
+      all.updatedWith(holder)(_.map(record => record.copy(holds = record.holds - number)))
+    copy(leases = leases - number, seldom = seldom - lease.place, workers = freed)
 
   private def returned(lease: Lease, counted: Counts): Coordinator =
     without(lease).copy(waiting = waiting.returned(lease.block), counts = counted)
-
-  /** Removes blocks from the record of what a worker holds. */
-  private def forgotten(worker: String, numbers: Set[Long]): Coordinator =
-    copy(workers = workers.updatedWith(worker)(_.map(record => record.copy(holds = record.holds -- numbers))))
 
   /** Removes a worker from leases; blocks without another worker wait again. */
   private def released(worker: String, held: Map[Long, Long]): Coordinator =

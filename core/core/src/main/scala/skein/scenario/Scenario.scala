@@ -118,7 +118,7 @@ object Scenario:
 
   /** A message if a value is outside its bounds. */
   def outside(name: String, value: Int, fewest: Int, most: Int): Option[String] =
-    Option.when(value < fewest || value > most)(s"$name: expected $fewest to $most, got $value")
+    Expect.within(name, value, fewest, most).left.toOption
 
   /** A message for each `Double` setting of a scenario that is not above 0.
     *

@@ -20,10 +20,12 @@ private[skein] object InParallel:
   def asTheyCome[A, B](all: Iterator[A], threads: Int)(one: A => B)(use: B => Unit): Unit =
     val pool                 = Executors.newFixedThreadPool(threads)
     val ended                = ExecutorCompletionService[B](pool)
-    def submitted(): Boolean = all.hasNext && {
-      val each = all.next()
-      ended.submit(() => one(each)) != null
-    }
+    def submitted(): Boolean =
+      val isMore = all.hasNext
+      if isMore then
+        val each = all.next()
+        ended.submit(() => one(each)): Unit
+      isMore
     try
       var underWay = (0 until threads).count(_ => submitted())
       while underWay > 0 do

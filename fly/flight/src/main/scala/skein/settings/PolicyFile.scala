@@ -135,9 +135,7 @@ object PolicyFile:
   private def ofOnnx(path: String, told: Option[Role], asked: Option[Role]): Either[String, PolicyFile] =
     for
       found <- OnnxPolicy.read(path)
-      noted <- found.role match
-        case None       => Right(None)
-        case Some(text) => role(text).map(Some(_)).left.map(mistake => s"$path: its role: $mistake")
+      noted <- Expect.optional(found.role)(role(_)).left.map(mistake => s"$path: its role: $mistake")
       chosen = told.orElse(noted).orElse(asked).getOrElse(Role.Pursuer)
     yield PolicyFile(chosen, found.family, found.parameters(chosen))
 

@@ -12,14 +12,11 @@ object Export:
     * @return the files written
     */
   def parquet(recording: Path, directory: Path): Either[RecordError, Vector[Path]] =
+    def failed(reason: String): RecordError = RecordError.ExportFailed(recording, directory, reason)
     for
-      _ <- FileReason.attempt(RecordError.ExportFailed(
-        recording,
-        directory,
-        _
-      ))(Files.createDirectories(directory))
+      _     <- FileReason.attempt(failed)(Files.createDirectories(directory))
       files <- RecordingReader.withRecording(recording): connection =>
-        RecordingFile.attempt(RecordError.ExportFailed(recording, directory, _)):
+        RecordingFile.attempt(failed):
           Table.all.filterNot(_.isMissing(connection)).map(table =>
             write(table, directory.resolve(table.name + ".parquet"), connection)
           )

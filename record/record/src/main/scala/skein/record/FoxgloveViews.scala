@@ -137,7 +137,8 @@ private[record] final class FoxgloveViews(
     )
 
   private def obstacles(at: Instant): View =
-    val parts = stands.objects.flatMap(thing => thing.parts.map(part => (part, thing.place.outside(part.at))))
+    lazy val parts =
+      stands.objects.flatMap(thing => thing.parts.map(part => (part, thing.place.outside(part.at))))
     scene(
       Standing,
       at,

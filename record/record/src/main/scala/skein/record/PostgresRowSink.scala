@@ -49,7 +49,7 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
   def discard(): Unit =
     attempt(
       target,
-      Using.resource(target.connect())(_.createStatement().execute(s"DROP SCHEMA \"$schema\" CASCADE"))
+      Using.resource(target.connect())(Sql.execute(_, s"DROP SCHEMA \"$schema\" CASCADE"))
     )
       .left
       .foreach(why => failed = failed.orElse(Some(why)))

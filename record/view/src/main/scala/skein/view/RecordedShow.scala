@@ -18,16 +18,15 @@ final class RecordedShow(
     scene: Scene = Scene.Empty
 ) extends Show(id, vehicles, rows.flatMap((_, row) => ImagingSensor.of(row)).distinct, limits):
 
+  private val start = FlightTopics.startOf(rows)
+
   /** The time at which each row was known: of a row without a time, that of the row before. */
   private val times: Array[Instant] =
     rows.iterator
-      .scanLeft(FlightTopics.startOf(rows))((known, row) =>
-        FlightTopics.knownAt(row._2).getOrElse(known).max(known)
-      )
+      .scanLeft(start)((known, row) => FlightTopics.knownAt(row._2).getOrElse(known).max(known))
       .drop(1)
       .toArray
 
-  private val start    = times.headOption.getOrElse(Instant.ofNanos(0))
   private var playback = Playback(start, times.lastOption.getOrElse(start))
   private var topics   = begun
   private var next     = 0

@@ -94,9 +94,9 @@ object ViewServer:
       val place = segments(request.uri.path)
       (request.attributes.get(AttributeKeys.webSocketUpgrade), request.method) match
         case (Some(upgrade: WebSocketUpgrade), _) =>
-          shows.find(show => place == Vector("flights", show.id)).orElse(shows.headOption.filter(_ =>
-            path == "/"
-          )) match
+          val found =
+            if path == "/" then shows.headOption else shows.find(show => place == Vector("flights", show.id))
+          found match
             case Some(show) => watch(upgrade, show, guest).getOrElse(
                 refused(
                   StatusCodes.BadRequest,

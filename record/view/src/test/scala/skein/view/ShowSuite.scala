@@ -1,23 +1,29 @@
 package skein.view
 
-import org.apache.pekko.http.scaladsl.model.ws.{BinaryMessage, TextMessage}
 import java.nio.ByteOrder
+import org.apache.pekko.http.scaladsl.model.ws.{BinaryMessage, TextMessage}
 import skein.record.*
 import skein.units.*
 
 class ShowSuite extends munit.FunSuite:
 
-  /** Topic and JSON of every data message that waits for a viewer. */
-  private def seen(show: Show, viewer: Viewer): Vector[(topic: String, row: ujson.Value)] =
+  /** All messages that wait for a viewer. */
+  private def taken(viewer: Viewer) = Vector.unfold(())(_ => viewer.take().map((_, ())))
+
+  /** The topics of all waiting data messages, and their bytes. */
+  private def came(show: Show, viewer: Viewer): Vector[(topic: String, bytes: Array[Byte])] =
     val topics = show.channels.map(channel => channel.id -> channel.topic.name).toMap
-    Vector
-      .unfold(())(_ => viewer.take().map((_, ())))
+    taken(viewer)
       .collect { case BinaryMessage.Strict(bytes) if bytes(0) == 1 => bytes }
       .map: bytes =>
         (
           topics(bytes.slice(1, 5).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getInt.toLong),
-          ujson.read(bytes.drop(13).utf8String)
+          bytes.drop(13).toArray
         )
+
+  /** Topic and JSON of every data message that waits for a viewer. */
+  private def seen(show: Show, viewer: Viewer): Vector[(topic: String, row: ujson.Value)] =
+    came(show, viewer).map(one => (topic = one.topic, row = ujson.read(one.bytes)))
 
   /** Subscribes by the channels' own numbers. */
   private def watching(show: Show, topics: String*): Viewer =
@@ -61,19 +67,6 @@ class ShowSuite extends munit.FunSuite:
       Vector(("Pursuer", 3.0), ("Evader", 3.0))
     )
 
-  /** The topics of all waiting data messages, and their bytes. */
-  private def came(show: Show, viewer: Viewer): Vector[(topic: String, bytes: Array[Byte])] =
-    val topics = show.channels.map(channel => channel.id -> channel.topic.name).toMap
-    Vector
-      .unfold(())(_ => viewer.take().map((_, ())))
-      .collect { case BinaryMessage.Strict(bytes) if bytes(0) == 1 => bytes }
-      .map(bytes =>
-        (
-          topics(bytes.slice(1, 5).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getInt.toLong),
-          bytes.drop(13).toArray
-        )
-      )
-
   private val image  = "/vehicles/Pursuer/front_center/image"
   private val sensor = ImagingSensor.camera("Pursuer", "front_center", "Scene")
 
@@ -114,8 +107,7 @@ class ShowSuite extends munit.FunSuite:
     assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(33.0))
 
   /** The times that the server has sent to the viewer, s, in order. */
-  private def clock(viewer: Viewer): Vector[Double] = Vector
-    .unfold(())(_ => viewer.take().map((_, ())))
+  private def clock(viewer: Viewer): Vector[Double] = taken(viewer)
     .collect {
       case BinaryMessage.Strict(bytes) if bytes(0) == 2 =>
         bytes.drop(1).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getLong * 1e-9
@@ -148,7 +140,7 @@ class ShowSuite extends munit.FunSuite:
     show.turn(at(20))
     show.turn(at(30))
     assertEquals(asked, 2)
-    val came = Vector.unfold(())(_ => viewer.take().map((_, ())))
+    val came = taken(viewer)
     assert(came.exists { case BinaryMessage.Strict(bytes) => bytes(0) == 2; case _ => false })
     val late = watching(show, "/skein/reading", "/skein/ending")
     show.turn(at(40))
@@ -175,7 +167,7 @@ class ShowSuite extends munit.FunSuite:
     val show   = LiveShow(heading, Feed(), Vector(gauge))
     val viewer = watching(show, "/skein/graph")
     show.attempt(at(10))
-    val told = Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case TextMessage.Strict(text) =>
+    val told = taken(viewer).collect { case TextMessage.Strict(text) =>
       text
     }
     assert(told.exists(_.contains("no graph yet")), told.toString)
@@ -201,7 +193,7 @@ class ShowSuite extends munit.FunSuite:
     def greeting(now: Instant) =
       val viewer = Viewer(show.limits, Set.empty, () => ())
       show.entered(viewer, now)
-      Vector.unfold(())(_ => viewer.take().map((_, ()))).last
+      taken(viewer).last
     def playing(status: Protocol.Status, position: Instant) =
       BinaryMessage.Strict(Protocol.playbackState(Protocol.Playing(status, position, 1, seeked = false, "")))
     assertEquals(greeting(at(1.1)), playing(Protocol.Status.Playing, a + Span.ofMillis(100)))
@@ -248,7 +240,7 @@ class ShowSuite extends munit.FunSuite:
     val show   = LiveShow(heading, Feed())
     val viewer = watching(show)
     show.turn(at(1))
-    val told = Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case TextMessage.Strict(text) =>
+    val told = taken(viewer).collect { case TextMessage.Strict(text) =>
       text
     }
     assert(!told.exists(_.contains("too many to be shown")), told)
@@ -257,7 +249,7 @@ class ShowSuite extends munit.FunSuite:
     val show         = replay
     val Some((a, _)) = show.recorded: @unchecked
     val viewer       = watching(show)
-    Vector.unfold(())(_ => viewer.take().map((_, ()))): Unit
+    taken(viewer): Unit
     show.control(ClientMessage.Playback(playing = false, 1, Some(a + Span.ofMillis(150)), "me"), at(1)): Unit
     val expected = Protocol.Playing(Protocol.Status.Paused, a + Span.ofMillis(150), 1, seeked = true, "me")
     assertEquals(viewer.take(), Some(BinaryMessage.Strict(Protocol.playbackState(expected))))
@@ -269,7 +261,7 @@ class ShowSuite extends munit.FunSuite:
     val viewer       = watching(show, "/skein/reading")
     seen(show, viewer): Unit
     show.control(ClientMessage.Playback(playing = true, 1, Some(a + Span.ofMillis(300)), "on"), at(1)): Unit
-    Vector.unfold(())(_ => viewer.take().map((_, ()))): Unit
+    taken(viewer): Unit
     show.turn(at(1))
     show.control(ClientMessage.Playback(playing = false, 1, Some(to), "back"), at(1)): Unit
     show.control(ClientMessage.Playback(playing = true, 1, None, "play"), at(1)): Unit
@@ -277,7 +269,7 @@ class ShowSuite extends munit.FunSuite:
     def playing(status: Protocol.Status, seeked: Boolean, request: String) =
       Protocol.playbackState(Protocol.Playing(status, to, 1, seeked, request))
     val told =
-      Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case BinaryMessage.Strict(bytes) => bytes }
+      taken(viewer).collect { case BinaryMessage.Strict(bytes) => bytes }
     assertEquals(
       told.take(3),
       Vector(

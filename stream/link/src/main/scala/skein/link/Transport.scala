@@ -17,6 +17,9 @@ final case class Address(host: String, port: Int):
   /** The host in a URI's form: an IPv6 address in brackets. */
   def uriHost: String = if host.contains(':') then s"[$host]" else host
 
+  /** Whether it is reachable only from this machine. */
+  def isLoopback: Boolean = Try(InetAddress.getByName(host).isLoopbackAddress).getOrElse(false)
+
 object Address:
   private val Plain = raw"([^:\[\]]+):(\d{1,5})".r
   private val IPv6  = raw"\[([^\[\]]*:[^\[\]]*)\]:(\d{1,5})".r
