@@ -154,8 +154,7 @@ final class MarginTrial(task: MarginTask, clock: Clock)(using ActorSystem):
         if begun.exists(truth.at >= _) then truths += truth
 
     def judged(observed: Observed): MarginRun =
-      val behind = server.behind
-      val ended  = MarginRun.Ended(
+      val ended = MarginRun.Ended(
         exit,
         course.lasted,
         observed.connections,
@@ -165,9 +164,7 @@ final class MarginTrial(task: MarginTask, clock: Clock)(using ActorSystem):
         program.lastError,
         contacts,
         tracks,
-        lateness.starved.orElse(Option.when(behind > Span.Zero)(
-          s"the machine was too busy: the simulator skipped ${behind.toMillis.round} ms"
-        ))
+        lateness.starved.orElse(Lateness.skipped(server.behind))
       )
       val states = observed.methods.filter(_.kind == CallKind.State).flatMap(_.roundTripMs)
       MarginRun(

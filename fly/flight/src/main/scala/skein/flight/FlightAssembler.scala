@@ -229,7 +229,8 @@ final class FlightAssembler(
             startedAt,
             clock,
             () => opened.close(),
-            solver
+            solver,
+            () => server.fold(Span.Zero)(_.behind)
           ))
       starting
         .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }

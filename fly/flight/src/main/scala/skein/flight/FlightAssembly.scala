@@ -10,7 +10,10 @@ import skein.settings.FlightPlan
 import skein.solver.SolverClient
 import skein.units.*
 
-/** An assembled flight: simulator, link, client, vehicles at their starts, loop. */
+/** An assembled flight: simulator, link, client, vehicles at their starts, loop.
+  *
+  * @param skipped time that the built-in simulator has skipped, if the flight has one
+  */
 final class FlightAssembly private[skein] (
     val plan: FlightPlan,
     val flight: Flight,
@@ -21,7 +24,8 @@ final class FlightAssembly private[skein] (
     startedAt: Instant,
     clock: Clock,
     shutDown: () => Future[Done],
-    solver: Option[SolverClient]
+    solver: Option[SolverClient],
+    skipped: () => Span
 )(using ExecutionContext):
 
   /** Ends the flight immediately; the reason is recorded. */
@@ -56,7 +60,8 @@ final class FlightAssembly private[skein] (
   private def isPaused = plan.loop == LoopKind.Paused
 
   /** Late control threads do not matter while time stands still. */
-  private def starved: Option[String] = if isPaused then None else watchdog.starved
+  private def starved: Option[String] =
+    if isPaused then None else watchdog.starved.orElse(Lateness.skipped(skipped()))
 
   /** Completes when the flight has ended, everything is closed, and all records are written. */
   val landed: Future[FlightResult] =

@@ -16,5 +16,12 @@ class LatenessSuite extends munit.FunSuite:
       Some("the machine was too busy: 17 % of 600 ticks came more than 20 ms late, one 310 ms")
     )
 
+  test("a flight with one very late tick is starved"):
+    assertEquals(ticked((Seq.fill(599)(3.0) :+ 499.0)*).starved, None)
+    assertEquals(
+      ticked((Seq.fill(599)(3.0) :+ 1100.0)*).starved,
+      Some("the machine was too busy: 0 % of 600 ticks came more than 20 ms late, one 1100 ms")
+    )
+
   test("a few ticks are too few for a judgement"):
     assertEquals(ticked(Seq.fill(10)(500.0)*).starved, None)
