@@ -146,7 +146,8 @@ object Packaging {
     val answers   = lib / "answers"
     IO.createDirectory(answers)
     IO.withTemporaryDirectory { folder =>
-      val cache  = program :+ s"-XX:AOTCacheOutput=$aot"
+      // The optimising compiler costs the rehearsal a fifth of its time, and its cache gains nothing by it.
+      val cache  = program ++ Seq("-XX:TieredStopAtLevel=3", s"-XX:AOTCacheOutput=$aot")
       val status = Process(cache ++ Seq("skein.cli.Rehearsal", rehearsed.getPath, answers.getPath), folder).!(log)
       // What a busy machine did not fly is slower to start, no more.
       if (status != 0) log.warn("not all commands of the rehearsal ended well")
