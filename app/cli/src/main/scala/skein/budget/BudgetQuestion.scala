@@ -2,6 +2,7 @@ package skein.budget
 
 import skein.lanes.Engine
 import skein.optimise.Objective
+import skein.pickle.Fields
 import skein.policy.Role
 import skein.scenario.Scenarios
 import skein.search.{Conditions, Effort}
@@ -9,7 +10,7 @@ import skein.settings.{PolicyFile, ScenarioSettings}
 import upickle.default.ReadWriter
 
 /** A budget's question in the user's words: enough for another process to simulate identical episodes. */
-sealed trait BudgetQuestion derives ReadWriter:
+sealed trait BudgetQuestion:
   /** Resolves the question.
     *
     * @return Left says what was expected, what was given, and in which option
@@ -17,6 +18,7 @@ sealed trait BudgetQuestion derives ReadWriter:
   def subject(threads: Int)(using Scenarios): Either[String, BudgetSubject]
 
 object BudgetQuestion:
+  given ReadWriter[BudgetQuestion] = Fields.ofCases
 
   /** A question about a policy in the paper's duel.
     *

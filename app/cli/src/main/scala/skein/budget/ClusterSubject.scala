@@ -3,12 +3,12 @@ package skein.budget
 import scala.collection.immutable.ArraySeq
 import skein.cluster.BlockSolverFactory
 import skein.optimise.RunningStats
+import skein.pickle.Fields
 import skein.scenario.Scenarios
 import skein.search.SearchFile.given
 import skein.search.{BlockExecutor, JsonText}
 import skein.signal.LatencyDistribution
 import skein.units.Expect
-import upickle.default.ReadWriter
 
 /** A subject simulated by other processes, in blocks of some cells each, with the bits of a run in this
   * process.
@@ -53,7 +53,7 @@ object ClusterSubject:
     *   example because a file has other content, does not answer the question
     */
   private final case class ProbedQuestion(questions: Vector[BudgetQuestion], probes: Vector[RunningStats])
-      derives ReadWriter
+      derives Fields
 
   def bytes(
       questions: Vector[BudgetQuestion],

@@ -5,12 +5,12 @@ import skein.bytes.Codec
 import skein.cluster.{BlockSolver, BlockSolverFactory}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, ValueEvaluator}
+import skein.pickle.Fields
 import skein.scenario.Scenarios
 import skein.search.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile}
 import skein.training.{LearnQuestion, LearnSetup}
 import skein.units.{Expect, Span}
-import upickle.default.ReadWriter
 
 /** Workers' evaluation of a learned policy: on fresh episodes of forward simulation, and by flights in
   * virtual time.
@@ -20,7 +20,7 @@ private[cli] object LearnWork:
 
   /** @param probe the baseline's result at the coordinator */
   private final case class ProbedQuestion(question: LearnQuestion, probe: Vector[RunningStats])
-      derives ReadWriter
+      derives Fields
 
   def question(setup: LearnSetup): ArraySeq[Byte] =
     JsonText.bytes(ProbedQuestion(setup.question, setup.probe))

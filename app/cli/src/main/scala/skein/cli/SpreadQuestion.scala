@@ -7,11 +7,11 @@ import skein.bytes.Codec
 import skein.cluster.{BlockSolver, BlockSolverFactory}
 import skein.flight.{NotFlown, VirtualFlights}
 import skein.measure.{FlightSummary, SummaryBytes}
+import skein.pickle.Fields
 import skein.scenario.Scenarios
 import skein.search.{BlockBytes, BlockExecutor, JsonText}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.{Expect, Span}
-import upickle.default.ReadWriter
 
 /** A spread's flights as workers receive them. A block is one flight: the index of a plan of the settings,
   * and a seed.
@@ -19,7 +19,7 @@ import upickle.default.ReadWriter
   * @param settings `skein.fly`, as JSON
   * @param probe digests of short flights: a worker with other digests must not take part
   */
-private[cli] final case class SpreadQuestion(settings: String, probe: Vector[String]) derives ReadWriter:
+private[cli] final case class SpreadQuestion(settings: String, probe: Vector[String]) derives Fields:
   def bytes: ArraySeq[Byte] = JsonText.bytes(this)
 
 private[cli] object SpreadQuestion:

@@ -2,13 +2,13 @@ package skein.cli
 
 import scala.collection.immutable.ArraySeq
 import skein.bytes.Codec
+import skein.pickle.Fields
 import skein.scenario.{Scenario, Scenarios}
 import skein.search.{BlockBytes, JsonText}
 import skein.settings.NamedScene
 import skein.torture.{Torture, FaultVerdict}
 import skein.units.{Expect, Span}
 import skein.vehicle.VehicleKind
-import upickle.default.ReadWriter
 
 /** Flights with faults, as workers receive them. A block is a range of seeds.
   *
@@ -19,7 +19,7 @@ private[cli] final case class TortureQuestion(
     durationNanos: Long,
     scenario: Option[String],
     scene: Option[Map[String, String]]
-) derives ReadWriter:
+) derives Fields:
   def bytes: ArraySeq[Byte] = JsonText.bytes(this)
 
   /** @return Left says what was expected, what was given, and in which option */

@@ -3,14 +3,13 @@ package skein.search
 import skein.forward.{Delays, Engagement, LoopTiming, VelocityResponse}
 import skein.lanes.{Accelerator, TeamBatch}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
+import skein.pickle.Fields
 import skein.policy.Role
 import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenario, Scenarios}
 import skein.settings.{FlySettings, LinkText, SensorFile, VehicleChoice}
 import skein.units.{Decimals, Expect, Span}
 import skein.vehicle.{SensorNoise, VehicleKind}
-import upickle.default.ReadWriter
-import upickle.implicits.key
 
 /** Conditions of forward simulation for evaluating candidates, in the user's terms.
   *
@@ -21,14 +20,14 @@ import upickle.implicits.key
   */
 final case class Conditions(
     loop: String,
-    @key("model") plant: String,
+    plant: String,
     periodMs: Double,
     durationS: Double,
     altitudeM: Double = PaperDuel.AltitudeM,
     eye: Option[String] = None,
     movesInFlight: Int = Moves.InFlight,
     sensors: Option[String] = None
-) derives ReadWriter:
+):
 
   def loopText: String =
     if movesInFlight == Moves.InFlight || loop == LoopKind.Paused.label then loop
@@ -71,6 +70,7 @@ final case class Conditions(
     yield Conditions.Resolved(timing, vehicle, game.seeing(Role.Pursuer, sensor))
 
 object Conditions:
+  given Fields[Conditions] = Fields.derived[Conditions].renamed("plant", "model")
 
   /** Altitude at which a scenario's first multirotor starts, m. Cars alone have the duel's, for models that
     * no vehicle flies by.

@@ -1,6 +1,7 @@
 package skein.search
 
 import skein.optimise.{CmaEs, MethodState, Scored, SearchState, RunningStats}
+import skein.pickle.Fields
 import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson}
 
 /** A search on disk: its question, and its current state.
@@ -22,11 +23,11 @@ object SearchFile:
   private val onDisk = StateFile[SearchFile](Name, Version, "a search")
   export onDisk.{json, parse, read, write}
 
-  given ReadWriter[RunningStats]        = ReadWriter.derived
-  private given ReadWriter[Scored]      = ReadWriter.derived
-  private given ReadWriter[CmaEs.State] = ReadWriter.derived
-  private given ReadWriter[MethodState] = ReadWriter.derived
-  private given ReadWriter[SearchState] = ReadWriter.derived
+  given ReadWriter[RunningStats]        = Fields.derived
+  private given ReadWriter[Scored]      = Fields.derived
+  private given ReadWriter[CmaEs.State] = Fields.derived
+  private given ReadWriter[MethodState] = Fields.ofCases
+  private given ReadWriter[SearchState] = Fields.derived
   given ReadWriter[PosedSearch]         = readwriter[ujson.Value].bimap(
     {
       case duel: SearchQuestion => writeJs(duel)
@@ -36,4 +37,4 @@ object SearchFile:
     json =>
       if json.obj.contains("scenario") then readJson[TeamQuestion](json) else readJson[SearchQuestion](json)
   )
-  private given ReadWriter[SearchFile] = ReadWriter.derived
+  private given ReadWriter[SearchFile] = Fields.derived

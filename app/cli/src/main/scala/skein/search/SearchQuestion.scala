@@ -3,11 +3,11 @@ package skein.search
 import skein.forward.Engagement
 import skein.lanes.Engine
 import skein.optimise.{Objective, Search, SearchMethod}
+import skein.pickle.Fields
 import skein.policy.{PolicyFamily, Role}
 import skein.scenario.{Scenario, Scenarios}
 import skein.settings.PolicyFile
 import skein.units.Expect
-import upickle.default.ReadWriter
 
 /** The question of a search for a duel's policy.
   *
@@ -30,7 +30,7 @@ final case class SearchQuestion(
     population: Int,
     seed: Long,
     fresh: Option[Int] = None
-) extends PosedSearch derives ReadWriter:
+) extends PosedSearch derives Fields:
 
   def setup(using scenarios: Scenarios): Either[String, ReadySearch] =
     for

@@ -4,12 +4,12 @@ import com.typesafe.config.ConfigUtil.quoteString
 import skein.forward.Engagement
 import skein.lanes.Engine
 import skein.optimise.{Objective, RunningStats, ScenarioTerm}
+import skein.pickle.Fields
 import skein.policy.{Axis, SearchSpace}
 import skein.scenario.{Nearest, Scenario, ScenarioKind, ScenarioText, Scenarios}
 import skein.settings.{ConfigKeys, LinkText, ScenarioSettings}
 import skein.units.Decimals.significant
 import skein.units.Expect
-import upickle.default.ReadWriter
 
 /** The question of a search over a scenario's settings.
   *
@@ -33,7 +33,7 @@ final case class TeamQuestion(
     population: Int,
     seed: Long,
     fresh: Int
-) extends PosedSearch derives ReadWriter:
+) extends PosedSearch derives Fields:
   import TeamQuestion.*
 
   def setup(using scenarios: Scenarios): Either[String, ReadySearch] =

@@ -1,10 +1,10 @@
 package skein.search
 
+import skein.pickle.Fields
 import skein.units.Expect
-import upickle.default.ReadWriter
 
 /** A setting that is searched between two bounds, given by its key. */
-final case class Varied(key: String, least: Double, most: Double) derives ReadWriter
+final case class Varied(key: String, least: Double, most: Double) derives Fields
 
 object Varied:
   private val Number = """(-?[\d.]+(?:[eE][+-]?\d+)?)"""

@@ -3,9 +3,9 @@ package skein.search
 import scala.collection.immutable.ArraySeq
 import skein.cluster.BlockSolverFactory
 import skein.optimise.RunningStats
+import skein.pickle.Fields
 import skein.scenario.Scenarios
 import skein.units.Expect
-import upickle.default.ReadWriter
 
 /** A search's question as workers receive it.
   *
@@ -16,7 +16,7 @@ final case class VerifiedQuestion(question: PosedSearch, probe: Vector[RunningSt
 
 object VerifiedQuestion:
   import SearchFile.given
-  private given ReadWriter[VerifiedQuestion] = ReadWriter.derived
+  private given Fields[VerifiedQuestion] = Fields.derived
 
   /** Refuses to mix results of two programs.
     *

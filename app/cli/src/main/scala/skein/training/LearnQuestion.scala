@@ -5,13 +5,13 @@ import skein.forward.{Delays, Engagement}
 import skein.lanes.{Engine, TeamCandidate}
 import skein.learn.{Algorithm, LearnerSettings, SideTask}
 import skein.optimise.{Objective, RunningStats, TeamEvaluator, ValueEvaluator}
+import skein.pickle.Fields
 import skein.policy.{LearnedPolicy, LearnerSpace, PolicyFamily, Role}
 import skein.scenario.{PaperDuel, ScenarioText, Scenarios}
 import skein.search.{Baseline, Conditions, Judge}
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.Decimals.significant
 import skein.units.Expect
-import upickle.default.ReadWriter
 
 /** A learning task in the user's words: enough to continue it, or to repeat it.
   *
@@ -48,7 +48,7 @@ final case class LearnQuestion(
     scenario: String = PaperDuel.Name,
     set: Map[String, String] = Map.empty,
     climbMps: Double = 0
-) derives ReadWriter:
+) derives Fields:
   import LearnQuestion.*
 
   /** @return Left says what was expected, what was given, and in which option */
@@ -92,7 +92,7 @@ final case class LearnQuestion(
     yield LearnGame(by, stated)
 
 object LearnQuestion:
-  given ReadWriter[LearnerSettings] = ReadWriter.derived
+  given Fields[LearnerSettings] = Fields.derived
 
   private val MostSteps        = 1_000_000_000_000L
   private val MostEnvironments = 1 << 16

@@ -12,11 +12,11 @@ import java.util.zip.{CRC32C, CheckedInputStream, CheckedOutputStream}
 import scala.util.Using
 import skein.learn.Learner
 import skein.optimise.RunningStats
+import skein.pickle.Fields
 import skein.record.FileReason
 import skein.search.SearchFile.given
 import skein.search.{NamedFiles, StateFile}
 import skein.units.Expect
-import upickle.default.ReadWriter
 
 /** The progress of learning.
   *
@@ -27,18 +27,18 @@ final case class LearnState(
     rounds: Int = 0,
     scores: Vector[LearnScore] = Vector.empty,
     best: Option[LearnBest] = None
-) derives ReadWriter
+) derives Fields
 
 /** @param steps total number of steps of all environments before the evaluation
   * @param mean mean objective over the evaluation's episodes
   */
-final case class LearnScore(steps: Long, mean: Double, sd: Double) derives ReadWriter
+final case class LearnScore(steps: Long, mean: Double, sd: Double) derives Fields
 
 /** The policy with the best score so far.
   *
   * @param weights the network's weights, for a [[skein.policy.LearnedPolicy]]
   */
-final case class LearnBest(steps: Long, mean: Double, weights: Vector[Double]) derives ReadWriter
+final case class LearnBest(steps: Long, mean: Double, weights: Vector[Double]) derives Fields
 
 /** A learning task on disk: `learn.json` with question and state, and next to it the learner's state.
   *
@@ -51,7 +51,7 @@ final case class LearnFile(
     state: LearnState,
     files: Map[String, String] = Map.empty,
     probe: Vector[RunningStats] = Vector.empty
-) derives ReadWriter
+) derives Fields
 
 object LearnFile:
   val Name           = "learn.json"
