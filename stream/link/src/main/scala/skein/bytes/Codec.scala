@@ -10,7 +10,7 @@ import java.io.{
 }
 import java.util.Locale
 import scala.collection.immutable.ArraySeq
-import scala.compiletime.{constValue, erasedValue, summonInline}
+import scala.compiletime.{constValue, erasedValue, summonAll, summonInline}
 import scala.deriving.Mirror
 import skein.units.*
 
@@ -104,23 +104,21 @@ object Codec:
 
   /** The codec of a case class or an enum, whose fields have codecs. */
   inline def derived[A](using mirror: Mirror.Of[A]): Codec[A] = inline mirror match
-    case product: Mirror.ProductOf[A] => ofFields(product, fields[product.MirroredElemTypes])
+    case product: Mirror.ProductOf[A] =>
+      ofFields(product, summonAll[Tuple.Map[product.MirroredElemTypes, Codec]])
     case sum: Mirror.SumOf[A]         =>
       ofCases(constValue[sum.MirroredLabel], sum, cases[sum.MirroredElemTypes])
-
-  private inline def fields[T <: Tuple]: List[Codec[Any]] = inline erasedValue[T] match
-    case _: EmptyTuple     => Nil
-    case _: (head *: tail) => summonInline[Codec[head]].asInstanceOf[Codec[Any]] :: fields[tail]
 
   private inline def cases[T <: Tuple]: List[Codec[Any]] = inline erasedValue[T] match
     case _: EmptyTuple     => Nil
     case _: (head *: tail) =>
       derived[head](using summonInline[Mirror.Of[head]]).asInstanceOf[Codec[Any]] :: cases[tail]
 
-  private[skein] def ofFields[A](product: Mirror.ProductOf[A], fields: List[Codec[Any]]): Codec[A] =
+  private[skein] def ofFields[A](product: Mirror.ProductOf[A], fields: Tuple): Codec[A] =
+    val codecs = fields.productIterator.map(_.asInstanceOf[Codec[Any]]).toList
     of[A]((value, out) =>
-      for (field, codec) <- value.asInstanceOf[Product].productIterator.zip(fields) do codec.write(field, out)
-    )(in => product.fromProduct(Tuple.fromArray(fields.map(_.read(in)).toArray[Any])))
+      for (field, codec) <- value.asInstanceOf[Product].productIterator.zip(codecs) do codec.write(field, out)
+    )(in => product.fromProduct(Tuple.fromArray(codecs.map(_.read(in)).toArray[Any])))
 
   private[skein] def ofCases[A](label: String, sum: Mirror.SumOf[A], cases: List[Codec[Any]]): Codec[A] =
     val all = cases.toVector

@@ -1,7 +1,7 @@
 package skein.ros.message
 
 import scala.collection.immutable.ArraySeq
-import scala.compiletime.{erasedValue, summonInline}
+import scala.compiletime.summonAll
 import scala.deriving.Mirror
 
 /** Writes values as CDR, the encoding of ROS 2's messages, and reads them back to the bit. A case class is
@@ -72,13 +72,10 @@ object Cdr:
 
   /** The encoding of a case class whose fields have encodings. */
   inline def derived[A](using mirror: Mirror.ProductOf[A]): Cdr[A] =
-    ofFields(mirror, fields[mirror.MirroredElemTypes])
+    ofFields(mirror, summonAll[Tuple.Map[mirror.MirroredElemTypes, Cdr]])
 
-  private inline def fields[T <: Tuple]: List[Cdr[Any]] = inline erasedValue[T] match
-    case _: EmptyTuple     => Nil
-    case _: (head *: tail) => summonInline[Cdr[head]].asInstanceOf[Cdr[Any]] :: fields[tail]
-
-  private[message] def ofFields[A](mirror: Mirror.ProductOf[A], fields: List[Cdr[Any]]): Cdr[A] =
+  private[message] def ofFields[A](mirror: Mirror.ProductOf[A], fields: Tuple): Cdr[A] =
+    val each = fields.productIterator.map(_.asInstanceOf[Cdr[Any]]).toList
     of[A]((value, to) =>
-      for (field, cdr) <- value.asInstanceOf[Product].productIterator.zip(fields) do cdr.write(field, to)
-    )(from => mirror.fromProduct(Tuple.fromArray(fields.map(_.read(from)).toArray[Any])))
+      for (field, cdr) <- value.asInstanceOf[Product].productIterator.zip(each) do cdr.write(field, to)
+    )(from => mirror.fromProduct(Tuple.fromArray(each.map(_.read(from)).toArray[Any])))
