@@ -2,13 +2,9 @@ package skein.settings
 
 import com.typesafe.config.{Config, ConfigOrigin, ConfigValueType}
 import java.util.Locale
-import pureconfig.generic.derivation.{
-  ConfigReaderDerivation,
-  CoproductConfigReaderDerivation,
-  ProductConfigReaderDerivation
-}
-import pureconfig.{ConfigFieldMapping, ConfigReader}
-import scala.annotation.nowarn
+import pureconfig.error.KeyNotFound
+import pureconfig.{ConfigReader, ReadsMissingKeys}
+import scala.compiletime.{constValueTuple, summonAll}
 import scala.deriving.Mirror
 
 /** Maps field names to keys of the configuration: `moves-in-flight` for the field `movesInFlight`, in every
@@ -34,12 +30,24 @@ private[skein] object ConfigKeys:
     Some(origin.description).filter(_.startsWith("--"))
 
   /** Reads a case class from an object with a key for each field. */
-  inline def reader[A](using inline mirror: Mirror.Of[A]): ConfigReader[A] =
-    ByField.derived(ConfigReader)[A]
+  inline def reader[A](using mirror: Mirror.ProductOf[A]): ConfigReader[A] =
+    ofFields(
+      mirror,
+      constValueTuple[mirror.MirroredElemLabels],
+      summonAll[Tuple.Map[mirror.MirroredElemTypes, ConfigReader]]
+    )
 
-  // pureconfig moves this to another artifact, which we need for nothing else.
-  @nowarn("cat=deprecation")
-  object ByField
-      extends ConfigReaderDerivation
-      with CoproductConfigReaderDerivation(ConfigFieldMapping(ofField), "type")
-      with ProductConfigReaderDerivation(ConfigFieldMapping(ofField))
+  def ofFields[A](mirror: Mirror.ProductOf[A], labels: Tuple, readers: Tuple): ConfigReader[A] =
+    val keys = labels.productIterator.map(label => ofField(label.toString)).toVector
+    val each = keys.zip(readers.productIterator.map(_.asInstanceOf[ConfigReader[Any]]))
+    ConfigReader.fromCursor: cursor =>
+      cursor.asObjectCursor.flatMap: found =>
+        each
+          .map: (key, reader) =>
+            val value = found.atKeyOrUndefined(key)
+            if value.isUndefined && !reader.isInstanceOf[ReadsMissingKeys] then
+              found.failed(KeyNotFound.forKeys(key, found.keys))
+            else reader.from(value)
+          .foldLeft(Right(Vector.empty): ConfigReader.Result[Vector[Any]]):
+            ConfigReader.Result.zipWith(_, _)(_ :+ _)
+          .map(values => mirror.fromProduct(Tuple.fromArray(values.toArray)))

@@ -217,19 +217,19 @@ private[record] object Columns:
   inline def columns[A](names: String*)(using mirror: Mirror.ProductOf[A]): Columns[A] =
     ofFields(
       mirror,
-      if names.isEmpty then constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString) else names,
-      summonAll[Tuple.Map[
-        mirror.MirroredElemTypes,
-        FieldColumns
-      ]].toList.asInstanceOf[List[FieldColumns[Any]]]
+      names,
+      constValueTuple[mirror.MirroredElemLabels],
+      summonAll[Tuple.Map[mirror.MirroredElemTypes, FieldColumns]]
     )
 
   private[record] def ofFields[A](
       mirror: Mirror.ProductOf[A],
       names: Seq[String],
-      fields: List[FieldColumns[Any]]
+      labels: Tuple,
+      fields: Tuple
   ): Columns[A] =
-    val parts = fields.lazyZip(names).map(_(_)).toVector
+    val named = if names.isEmpty then labels.productIterator.map(_.toString) else names.iterator
+    val parts = fields.productIterator.zip(named).map(_.asInstanceOf[FieldColumns[Any]](_)).toVector
     new Columns[A]:
       val definitions: Vector[Column]           = parts.flatMap(_.definitions)
       def append(value: A, to: RowWriter): Unit =

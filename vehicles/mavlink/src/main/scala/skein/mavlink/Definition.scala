@@ -13,11 +13,14 @@ import scala.reflect.ClassTag
 final class Definition[A <: Message] @publicInBinary private[mavlink] (
     val id: Int,
     label: String,
-    labels: Vector[String],
-    fields: Vector[Field[?]],
-    make: Product => A,
+    mirror: Mirror.ProductOf[A],
+    fieldLabels: Tuple,
+    fieldCodecs: Tuple,
     private[mavlink] val of: Class[?]
 ):
+  private val labels = fieldLabels.productIterator.map(_.toString).toVector
+  private val fields = fieldCodecs.productIterator.map(_.asInstanceOf[Field[?]]).toVector
+
   /** The published name, such as `LOCAL_POSITION_NED`. */
   val name: String = Definition.snake(label).toUpperCase(java.util.Locale.ROOT)
 
@@ -47,7 +50,7 @@ final class Definition[A <: Message] @publicInBinary private[mavlink] (
     val bytes  = ByteBuffer.wrap(payload.padTo(length, 0.toByte)).order(ByteOrder.LITTLE_ENDIAN)
     val values = new Array[Any](fields.size)
     for index <- ordered ++ extensions do values(index) = fields(index).read(bytes)
-    make(Tuple.fromArray(values))
+    mirror.fromProduct(Tuple.fromArray(values))
 
   private def write[B](field: Field[B], to: ByteBuffer, value: Any): Unit =
     field.write(to, value.asInstanceOf[B])
@@ -61,9 +64,9 @@ object Definition:
   ): Definition[A] = Definition(
     id,
     constValue[mirror.MirroredLabel],
-    constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString).toVector,
-    fields.toList.map(_.asInstanceOf[Field[?]]).toVector,
-    mirror.fromProduct,
+    mirror,
+    constValueTuple[mirror.MirroredElemLabels],
+    fields,
     tag.runtimeClass
   )
 
