@@ -106,7 +106,7 @@ object Codec:
   inline def derived[A](using mirror: Mirror.Of[A]): Codec[A] = inline mirror match
     case product: Mirror.ProductOf[A] =>
       ofFields(product, summonAll[Tuple.Map[product.MirroredElemTypes, Codec]])
-    case sum: Mirror.SumOf[A]         =>
+    case sum: Mirror.SumOf[A] =>
       ofCases(constValue[sum.MirroredLabel], sum, cases[sum.MirroredElemTypes])
 
   private inline def cases[T <: Tuple]: List[Codec[Any]] = inline erasedValue[T] match

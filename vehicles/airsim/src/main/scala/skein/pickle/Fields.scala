@@ -24,7 +24,7 @@ private[skein] class Fields[A](
   private val names    = labels.productIterator.map(_.toString).toArray
   private val codecs   = fields.productIterator.map(_.asInstanceOf[ReadWriter[Any]]).toArray
   private val defaults = Fields.defaultsOf(mirror, names.length)
-  private val optional = names.map(omits)
+  private val optional = names.indices.filter(i => omits(names(i)) && defaults(i) != missing).toSet
 
   private def isSingle = names.isEmpty
 
@@ -51,17 +51,19 @@ private[skein] class Fields[A](
         if absent.nonEmpty then throw Abort(s"missing keys in dictionary: ${absent.mkString(", ")}")
         mirror.fromProduct(Tuple.fromArray(values))
 
-  private def of(value: A, field: Int) = value.asInstanceOf[Product].productElement(field)
-
-  private def isWritten(value: A)(field: Int) = !(optional(field) && of(value, field) == defaults(field))
-
-  def length(value: A): Int = names.indices.count(isWritten(value))
+  def length(value: A): Int =
+    names.length - optional.count(field =>
+      value.asInstanceOf[Product].productElement(field) == defaults(field)
+    )
 
   def writeToObject[V](map: ObjVisitor[?, V], value: A): Unit =
     val into = map.narrow
-    for i <- names.indices if isWritten(value)(i) do
-      into.visitKeyValue(into.visitKey(-1).visitString(names(i), -1))
-      into.visitValue(codecs(i).write(into.subVisitor, of(value, i)), -1)
+    val each = value.asInstanceOf[Product]
+    for i <- 0 until names.length do
+      val field = each.productElement(i)
+      if !(optional.contains(i) && field == defaults(i)) then
+        into.visitKeyValue(into.visitKey(-1).visitString(names(i), -1))
+        into.visitValue(codecs(i).write(into.subVisitor, field), -1)
 
   def write0[V](out: Visitor[?, V], value: A): V =
     val map = out.visitObject(length(value), true, -1)
