@@ -281,6 +281,10 @@ class Series:
         """Total time above 0, s."""
         return self._reduced(name, "time-positive", last_s, after_s)
 
+    def entries(self, name: str, *, last_s: Any = None, after_s: Any = None) -> Measure:
+        """How many times it comes to be above 0."""
+        return self._reduced(name, "entries", last_s, after_s)
+
     def first_positive(self, name: str) -> Measure:
         """First time above 0, s."""
         return self._reduced(name, "first-positive")

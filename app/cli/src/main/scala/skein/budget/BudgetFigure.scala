@@ -1,7 +1,7 @@
 package skein.budget
 
+import skein.optimise.Objective
 import skein.plot.*
-import skein.search.WholeFlights
 import skein.units.Decimals.significant
 
 /** The objective's deviation from the paused loop by latency and jitter, one panel per period, with the
@@ -106,7 +106,7 @@ object BudgetFigure:
         i   <- map.budget.jittersMs.indices
         j   <- map.budget.meansMs.indices
         off <- map.budget.deviation(i, j)
-        if off.abs * map.budget.per < WholeFlights.Never / (2 * map.episodes)
+        if off.abs * map.budget.per < Objective.Never / (2 * map.episodes)
       yield off * factor
     val leastReach = maps.map(map => 2 * map.tolerance.value * map.tolerance.shown(map.task.unit)._1).max
     val sizes      = offs.map(_.abs).sorted

@@ -109,7 +109,7 @@ final class FlownSubject private (
     val came = InParallel.map(all, question.threads): (link, episode) =>
       if cells.isCancelled() then Left(BudgetSubject.Stopped)
       else
-        val came = value(Some(link), episode).map(_.getOrElse(WholeFlights.Never))
+        val came = value(Some(link), episode).map(_.getOrElse(Objective.Never))
         cells.onProgress(done.incrementAndGet())
         came
     val (missing, flown) = came.partitionMap(identity)

@@ -32,7 +32,7 @@ final class WholeFlights private (
     * @return Left says why the episode could not be completed
     */
   def value(scenario: Scenario, objective: Objective, episode: Int): Either[String, Double] =
-    sum(scenario, objective, episode).map(_.getOrElse(objective.direction.sign * WholeFlights.Never))
+    sum(scenario, objective, episode).map(_.getOrElse(objective.direction.sign * Objective.Never))
 
   /** The weighted sum of an episode's measures; None if one has no value.
     *
@@ -59,11 +59,6 @@ final class WholeFlights private (
     )
 
 object WholeFlights:
-  /** The value of an episode that never reaches one of its measures, in the objective's unit: worse, and
-    * further from the paused loop's, than that of any episode that does.
-    */
-  val Never = 1e6
-
   /** Maximum number of flights in virtual time in one search: a day of them, at one a second. */
   val MostVirtual = 100_000
 
@@ -151,8 +146,8 @@ object WholeFlights:
   /** Why a scenario needs whole flights, world by world; None if its quantities suffice. */
   def whole(flown: Engagement, objective: Objective): Option[String] =
     def keysWhere(is: Measure => Boolean) = objective.measures.map(_._2).filter(is).map(ScenarioTerm.keyOf)
-    val plain                             = keysWhere(_.reduced.isEmpty)
-    val partly                            = keysWhere(_.over.isInstanceOf[Window.Last])
+    val plain                             = keysWhere(_.parts.isEmpty)
+    val partly                            = keysWhere(_.parts.exists(_.over.isInstanceOf[Window.Last]))
     val refused                           =
       flown.isOver.collect { case end: OwnEnd => EndFormula.of(end, flown.agents.size) }.flatMap(
         _.left.toOption

@@ -1,7 +1,8 @@
 package skein.budget
 
+import skein.optimise.Objective
 import skein.scenario.*
-import skein.search.{Conditions, WholeFlights}
+import skein.search.Conditions
 import skein.signal.LatencyDistribution
 import skein.testing.Optimised
 import skein.units.*
@@ -76,7 +77,7 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
 
   test("a measure that a flight never reaches deviates more than any other"):
     val never = subject(Drift(toM = 1000), Some("arrives"), Conditions("stream", "drag", 100, 10))
-    assertEquals(at(never, 0), WholeFlights.Never)
+    assertEquals(at(never, 0), Objective.Never)
     val swept = BudgetSweep(never, BudgetAxes(Vector(0), Vector(0)), Tolerance.Within(1), Some(1))
     assert(clue(swept.map(
       _ => (),

@@ -75,9 +75,13 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     assert(clue(gaps(0).mean) < clue(gaps(1).mean))
 
   test("a measure of whole flights is searched world by world, and the engine's line states that"):
-    val vary  = Vector(Varied("lane-m", 2, 10), Varied("spacing-m", 4, 12))
-    val ready =
-      setup(question.copy("crossing", vary = vary, objective = "arrived", candidates = 4, episodes = 1))
+    given Scenarios = Scenarios(ScenarioKind(TeamSearchSimulation.Lined()))
+    val vary        = Vector(Varied("lane-m", 2, 10), Varied("spacing-m", 4, 12))
+    val ready       =
+      question.copy("lined", Map.empty, vary, "arrived", candidates = 4, episodes = 1).setup.fold(
+        fail(_),
+        identity
+      )
     assert(ready.engines.matches("scalar: arrived is of whole flights.*"), ready.engines)
     assert(ready.rate(1).exists(_.matches("about [0-9,]+ a second")), ready.rate(1))
     assert(!ready.isVirtual && !ready.engine(ready.space.defaults, Judge.Candidates).fliesByLanes)
@@ -166,6 +170,12 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
       assertEquals(Varied.parse(text), Left(s"expected bounds from -1e9 to 1e9, got '$text'"))
 
 object TeamSearchSimulation:
+  /** A crossing with a measure that is computed from whole tracks. */
+  final case class Lined(laneM: Double = 4, spacingM: Double = 6) extends Scenario:
+    def agents                             = Crossing(8, laneM = laneM, spacingM = spacingM).agents
+    override def measures: Vector[Measure] =
+      Vector(Measure.count("arrived")(tracks => tracks.vehicles.count(tracks.northM(_).last > 20)))
+
   import skein.forward.{Engagement, LoopObserver, Rollout}
   import skein.simd.WorldRandom
 

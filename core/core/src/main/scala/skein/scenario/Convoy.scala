@@ -77,7 +77,7 @@ final case class Convoy(
     val (ahead, right) = places.unzip
     Series.of("off places, rms", "m", OffSlots(circuit, IArray.from(ahead), IArray.from(right)))
 
-  private def apart = Series.of("between the cars", "m", Apart, Some(Bound("asked for", gapM)))
+  private def apart = Series.of("between the cars", "m", Apart(Lead, Rear), Some(Bound("asked for", gapM)))
 
   private def unseen =
     Series.of("from a car to its nearest drone", "m", FromDrones, Some(Bound("in view", sightM)))
@@ -86,9 +86,6 @@ object Convoy:
   // Indices of the vehicles. The drones follow the leading car, as the scores of slots require.
   private val Lead = 0
   private val Rear = 4
-
-  private case object Apart extends Quantity:
-    def of(positions: Positions): Double = positions.distanceM(Lead, Rear)
 
   /** Horizontal distance from each car to its nearest drone, m; the larger of the two. */
   private case object FromDrones extends Quantity:

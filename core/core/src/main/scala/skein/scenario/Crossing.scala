@@ -54,15 +54,15 @@ final case class Crossing(
   override def measures: Vector[Measure] = Vector(
     smallest.least("closest"),
     smallest.leastAt("at"),
-    Measure.count("violations")(separation.violations(_).size),
-    Measure.count("arrived")(arrivalsS(_).size),
-    Measure("to goal", "s"): tracks =>
-      val arrivals = arrivalsS(tracks)
-      Option.when(arrivals.nonEmpty)(arrivals.sum / arrivals.size)
+    Measure.join("violations", "", violations, isCount = true)(counts => Some(counts.flatten.sum)),
+    Measure.join("arrived", "", arrivals, isCount = true)(timesS => Some(timesS.flatten.size)),
+    Measure.join("to goal", "s", arrivals): timesS =>
+      val reached = timesS.flatten
+      Option.when(reached.nonEmpty)(reached.sum / reached.size)
     ,
-    Measure("per min", ""): tracks =>
-      val arrivals = arrivalsS(tracks)
-      arrivals.maxOption.map(arrivals.size / _ * 60)
+    Measure.join("per min", "", arrivals): timesS =>
+      val reached = timesS.flatten
+      reached.maxOption.map(reached.size / _ * 60)
   )
 
   override def note: String =
@@ -79,12 +79,15 @@ final case class Crossing(
   private def smallest =
     Series.of("smallest separation", "m", Separation, Some(Bound("set minimum", minimumM)))
 
-  /** Arrival times of the vehicles that reached their goals, s. */
-  private def arrivalsS(tracks: Tracks): Vector[Double] =
-    for
-      (vehicle, (north, east)) <- tracks.vehicles.toVector.zip(goals)
-      instant                  <- tracks.instants.find(tracks.distanceM(vehicle, north, east, _) < ArrivedM)
-    yield tracks.timeS(instant)
+  /** When each vehicle arrives at its goal, if it does, s. */
+  private def arrivals: Vector[Measure] = goals.zipWithIndex.map: (goal, vehicle) =>
+    val (north, east) = goal
+    Series.of("to the goal", "m", FromPlace(vehicle, north, east)).firstBelow("arrival", ArrivedM)
+
+  /** By pair of vehicles, how often they were nearer to one another than allowed. */
+  private def violations: Vector[Measure] =
+    for one <- Vector.range(1, vehicles); other <- Vector.range(0, one)
+    yield Series.of("separation", "m", Apart(one, other)).timesBelow("violations", minimumM)
 
   /** The routes by vehicle. Vehicles are assigned to the streams in turn; those of one stream fly one behind
     * the other. The first of a stream has the farthest goal, so that all fly equally far and none waits on

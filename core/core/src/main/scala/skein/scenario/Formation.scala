@@ -56,7 +56,7 @@ final case class Formation(
 
   override def measures: Vector[Measure] =
     val settled = Window.After(SettlingS)
-    val largest = Series("largest", "m")(tracks => instant => slotErrorsM(tracks, instant).max)
+    val largest = Series.of("largest", "m", FarthestOffSlot(errors))
     Vector(
       offSlots.rms("slot rms", settled),
       largest.most("largest", settled),
@@ -67,25 +67,11 @@ final case class Formation(
     "Distance of the followers to their slots after the first " +
       s"${SettlingS.significant(3)} s: root mean square, and the largest."
 
-  private def offSlots =
-    val (ahead, right) = slots.unzip
-    Series.of("slot error, rms", "m", OffSlots(circuit, IArray.from(ahead), IArray.from(right)))
+  private def offSlots = Series.of("slot error, rms", "m", errors)
 
-  /** Distance of each follower from its slot, m. The slots are in the frame along the circuit at the leader's
-    * place.
-    */
-  private def slotErrorsM(tracks: Tracks, instant: Int): Vector[Double] =
-    val (north, east) = (tracks.northM(0)(instant), tracks.eastM(0)(instant))
-    val heading       = circuit.headingRad(circuit.nearest(north, east))
-    val (cos, sin)    = (StrictMath.cos(heading), StrictMath.sin(heading))
-    slots.zip(tracks.vehicles.tail).map:
-      case ((ahead, right), follower) =>
-        tracks.distanceM(
-          follower,
-          north + ahead * cos - right * sin,
-          east + ahead * sin + right * cos,
-          instant
-        )
+  private def errors =
+    val (ahead, right) = slots.unzip
+    OffSlots(circuit, IArray.from(ahead), IArray.from(right))
 
 object Formation:
   /** Time in which the vehicles gain speed after the start, s; measures leave it out. */

@@ -5,16 +5,26 @@ package skein.scenario
   * @param unit unit of the value; may be empty
   * @param isCount whether it counts events, which are summed over several flights
   * @param over the part of the flight that is measured; a shorter flight has no value
-  * @param reduced the quantity that is reduced, if any; searches can optimise only such measures
+  * @param parts the quantities that are reduced, if the measure needs nothing else; searches can optimise
+  *   only such measures
+  * @param joined the value for the reductions of [[parts]], in their order
   */
 final class Measure private (
     val name: String,
     val unit: String,
     val isCount: Boolean,
     val over: Window,
-    val reduced: Option[OverFlight],
+    val parts: Vector[OverFlight],
+    joined: Option[Vector[Double] => Option[Double]],
     value: Tracks => Option[Double]
 ):
+  /** The quantity that is reduced, if the measure is this reduction. */
+  def reduced: Option[OverFlight] = if joined.isEmpty then parts.headOption else None
+
+  /** The value for the reductions of [[parts]], in their order; a time that is never reached is infinite. */
+  private[skein] def of(reductions: Vector[Double]): Option[Double] =
+    joined.fold(reductions.headOption)(_(reductions)).filter(_.isFinite)
+
   /** The value for a flight. None if the flight has none, for example a time of arrival without an arrival,
     * or if the value is not finite.
     */
@@ -24,27 +34,45 @@ final class Measure private (
 
   /** The measure for only the first vehicles; for reports, not for searches. */
   private[scenario] def ofFirst(count: Int): Measure =
-    new Measure(name, unit, isCount, over, None, tracks => of(tracks.first(count)))
+    new Measure(name, unit, isCount, over, Vector.empty, None, tracks => of(tracks.first(count)))
 
 object Measure:
   def apply(name: String, unit: String)(of: Tracks => Option[Double]): Measure =
-    new Measure(name, unit, false, Window.Whole, None, of)
-
-  private[scenario] def over(name: String, unit: String, part: Window)(
-      of: (Tracks, Range) => Double
-  ): Measure =
-    new Measure(name, unit, false, part, None, tracks => part.of(tracks).map(of(tracks, _)))
+    new Measure(name, unit, false, Window.Whole, Vector.empty, None, of)
 
   /** A measure that counts events, for example vehicles that arrived. */
   def count(name: String)(of: Tracks => Int): Measure =
-    new Measure(name, "", true, Window.Whole, None, tracks => Some(of(tracks).toDouble))
+    new Measure(name, "", true, Window.Whole, Vector.empty, None, tracks => Some(of(tracks).toDouble))
 
-  private[scenario] def of(
+  /** A measure computed from others, for example the mean time of arrival of several vehicles. It is of as
+    * much of a flight as they are. Searches can optimise it if they can optimise each of them.
+    *
+    * @param isCount whether it counts events
+    * @param of the value for those of the parts, in their order; a part may have none
+    */
+  def join(name: String, unit: String, parts: Vector[Measure], isCount: Boolean = false)(
+      of: Vector[Option[Double]] => Option[Double]
+  ): Measure =
+    val reduced = if parts.forall(_.reduced.nonEmpty) then parts.flatMap(_.reduced) else Vector.empty
+    new Measure(
+      name,
+      unit,
+      isCount,
+      Window.Whole,
+      reduced,
+      Some(values => of(parts.zip(values).map((part, value) => part.of(Vector(value))))),
+      tracks => of(parts.map(_.of(tracks)))
+    )
+
+  /** @param by the quantity that is reduced, if the measure is its reduction */
+  private[scenario] def over(
       name: String,
       unit: String,
-      by: OverFlight
+      isCount: Boolean,
+      part: Window,
+      by: Option[OverFlight]
   )(of: (Tracks, Range) => Double): Measure =
-    new Measure(name, unit, false, by.over, Some(by), tracks => by.over.of(tracks).map(of(tracks, _)))
+    new Measure(name, unit, isCount, part, by.toVector, None, tracks => part.of(tracks).map(of(tracks, _)))
 
 /** A quantity over a part of a flight, reduced to one value. */
 final case class OverFlight(quantity: Quantity, reduction: Reduction, over: Window)
@@ -103,6 +131,14 @@ final class Series private (
   def firstBelow(name: String, bound: Double): Measure =
     below(bound).measure(name, Window.Whole, Reduction.FirstPositive)
 
+  /** How many times the quantity comes to be above a bound. */
+  def timesAbove(name: String, bound: Double, over: Window = Window.Whole): Measure =
+    above(bound).measure(name, over, Reduction.Entries)
+
+  /** How many times the quantity comes to be below a bound. */
+  def timesBelow(name: String, bound: Double, over: Window = Window.Whole): Measure =
+    below(bound).measure(name, over, Reduction.Entries)
+
   /** Time from which the quantity stays above a bound until the end, s; no value if it ends otherwise. */
   def staysAbove(name: String, bound: Double): Measure =
     above(bound).measure(name, Window.Whole, Reduction.StaysPositive)
@@ -119,12 +155,11 @@ final class Series private (
     new Series(name, unit, None, quantity.map(Shortfall(_, bound)))(tracks => at(tracks).andThen(bound - _))
 
   private[scenario] def measure(name: String, over: Window, reduction: Reduction): Measure =
-    val unit                                = if reduction.isTime then "s" else this.unit
-    def of(tracks: Tracks, instants: Range) =
-      reduction.of(instants.map(at(tracks)), index => tracks.timeS(instants(index)), tracks.stepS)
-    quantity.fold(Measure.over(name, unit, over)(of))(each =>
-      Measure.of(name, unit, OverFlight(each, reduction, over))(of)
-    )
+    val isCount = reduction == Reduction.Entries
+    val unit    = if isCount then "" else if reduction.isTime then "s" else this.unit
+    Measure.over(name, unit, isCount, over, quantity.map(OverFlight(_, reduction, over))):
+      (tracks, instants) =>
+        reduction.of(instants.map(at(tracks)), index => tracks.timeS(instants(index)), tracks.stepS)
 
 object Series:
   def apply(name: String, unit: String, bound: Option[Bound] = None)(at: Tracks => Int => Double): Series =

@@ -67,4 +67,4 @@ object PaperDuel:
   val AltitudeM = 20.0
 
   private val distance =
-    Series("distance", "m")(tracks => tracks.distanceM(1, 0, _))
+    Series.of("distance", "m", Apart(1, 0))

@@ -47,6 +47,14 @@ case object WidestGap extends Quantity:
         i += 1
       last -= 1
 
+/** Horizontal separation of two vehicles, m. */
+final case class Apart(one: Int, other: Int) extends Quantity:
+  def of(positions: Positions): Double = positions.distanceM(one, other)
+
+/** Horizontal distance of a vehicle from a place, m. */
+final case class FromPlace(vehicle: Int, northM: Double, eastM: Double) extends Quantity:
+  def of(positions: Positions): Double = positions.distanceM(vehicle, northM, eastM)
+
 /** Smallest horizontal separation between any two vehicles, m. */
 case object Separation extends Quantity:
   def of(positions: Positions): Double =
@@ -69,15 +77,38 @@ case object Separation extends Quantity:
 final case class OffSlots(circuit: Racetrack, aheadM: IArray[Double], rightM: IArray[Double])
     extends Quantity:
   def of(positions: Positions): Double =
-    val (north, east) = (positions.northM(0), positions.eastM(0))
-    val heading       = circuit.headingRad(circuit.nearest(north, east))
-    val (cos, sin)    = (StrictMath.cos(heading), StrictMath.sin(heading))
-    var sum           = 0.0
-    var i             = 0
+    val heading    = headingRad(positions)
+    val (cos, sin) = (StrictMath.cos(heading), StrictMath.sin(heading))
+    var sum        = 0.0
+    var i          = 0
     while i < aheadM.length do
-      val (slotNorth, slotEast) =
-        (north + aheadM(i) * cos - rightM(i) * sin, east + aheadM(i) * sin + rightM(i) * cos)
-      val off = positions.distanceM(i + 1, slotNorth, slotEast)
+      val off = offM(positions, i, cos, sin)
       sum += off * off
       i += 1
     math.sqrt(sum / aheadM.length)
+
+  private[scenario] def headingRad(positions: Positions): Double =
+    circuit.headingRad(circuit.nearest(positions.northM(0), positions.eastM(0)))
+
+  /** Deviation of a follower from its slot, m.
+    *
+    * @param cos cosine of the heading
+    */
+  private[scenario] def offM(positions: Positions, follower: Int, cos: Double, sin: Double): Double =
+    positions.distanceM(
+      follower + 1,
+      positions.northM(0) + aheadM(follower) * cos - rightM(follower) * sin,
+      positions.eastM(0) + aheadM(follower) * sin + rightM(follower) * cos
+    )
+
+/** The largest deviation of a follower from its slot, m. */
+final case class FarthestOffSlot(slots: OffSlots) extends Quantity:
+  def of(positions: Positions): Double =
+    val heading    = slots.headingRad(positions)
+    val (cos, sin) = (StrictMath.cos(heading), StrictMath.sin(heading))
+    var most       = 0.0
+    var i          = 0
+    while i < slots.aheadM.length do
+      most = most.max(slots.offM(positions, i, cos, sin))
+      i += 1
+    most

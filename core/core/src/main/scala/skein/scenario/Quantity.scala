@@ -63,8 +63,11 @@ enum Reduction:
   /** Time from which the value was above 0 until the end, s; infinite if the last value was not. */
   case StaysPositive
 
+  /** How many times the value became positive, a positive first value included. */
+  case Entries
+
   /** Whether it is a time, not a value of the quantity. */
-  private[scenario] def isTime: Boolean = !Set(Mean, Rms, Sd, Least, Most)(this)
+  private[scenario] def isTime: Boolean = !Set(Mean, Rms, Sd, Least, Most, Entries)(this)
 
   /** Whether it is a time that may never come. */
   private[skein] def mayBeNever: Boolean = this == FirstPositive || this == StaysPositive
@@ -85,6 +88,8 @@ enum Reduction:
       case TimePositive  => values.count(_ > 0) * stepS
       case FirstPositive => timeOf(values.indexWhere(_ > 0))
       case StaysPositive => timeOf(values.lastIndexWhere(value => !(value > 0)) + 1)
-      case Sd            =>
+      case Entries       =>
+        values.indices.count(index => values(index) > 0 && (index == 0 || !(values(index - 1) > 0)))
+      case Sd =>
         val mean = values.sum / values.size
         math.sqrt(values.map(value => (value - mean) * (value - mean)).sum / values.size)

@@ -92,4 +92,16 @@ class LimitSuite extends munit.FunSuite:
     assertEqualsDouble(value(apart.firstBelow("near from", 5)), 3, 0.03)
     assertEquals(apart.mean("later", Window.Last(11)).of(passing), None)
     assertEquals(apart.firstBelow("touching", 1).of(passing), None)
+    assertEquals(value(apart.timesBelow("passes", 5)), 1.0)
+    assertEquals(value(apart.timesAbove("partings", 5)), 2.0)
+    assertEquals(apart.timesBelow("passes", 5).title, "passes")
+    assert(apart.timesBelow("passes", 5).isCount)
     assertEquals(apart.least("closest").title, "closest m")
+
+  test("a measure joins others, of which some may have no value"):
+    val apart                 = Series("apart", "m")(tracks => tracks.separationM(0, 1, _))
+    def both(bounds: Double*) =
+      Measure.join("reached", "", bounds.map(apart.firstBelow("first", _)).toVector, isCount = true)(times =>
+        Some(times.flatten.size)
+      ).of(passing)
+    assertEquals((both(5, 4), both(5, 1), both(1)), (Some(2.0), Some(1.0), Some(0.0)))

@@ -238,7 +238,7 @@ object ScenarioFileSuite:
         "a reduction that there is not",
         line("measure nearest least", "measure nearest median"),
         "line 37: expected a reduction, one of mean, rms, sd, least, most, least-at, most-at, time-positive, " +
-          "first-positive, stays-positive, got 'median'"
+          "first-positive, stays-positive, entries, got 'median'"
       ),
       (
         "two vehicles of one name",

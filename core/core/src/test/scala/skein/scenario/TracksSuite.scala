@@ -100,6 +100,12 @@ class TracksSuite extends munit.FunSuite:
     assertEqualsDouble(of(Reduction.Rms), math.sqrt(89 / 3.0), 1e-12)
     assertEqualsDouble(of(Reduction.Sd), math.sqrt(14 / 3.0), 1e-12)
     assertEquals((of(Reduction.Least), of(Reduction.Most)), (3.0, 8.0))
+    assertEquals(of(Reduction.Entries), 1.0)
+
+  test("entries count how often values come to be above 0, from the first one on"):
+    def of(values: Double*) = Reduction.Entries.of(values.toVector, _.toDouble, 1)
+    assertEquals(of(-1, 2, 3, 0, 1, Double.NaN, 4, -2), 3.0)
+    assertEquals((of(1, -1), of(-1, 0)), (1.0, 0.0))
 
   private def positions(northEastM: (Double, Double)*) = Positions(
     IArray.from(northEastM.map(_._1)),

@@ -22,9 +22,11 @@ final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
   /** The scores that forward simulation computes for this objective; it must support every term.
     */
   def judged(durationS: Double, periodS: Double): Vector[Judged | Effort] =
-    terms.map((_, term) => term.judged(durationS, periodS).get)
+    terms.flatMap((_, term) => term.judged(durationS, periodS))
 
-  /** The objective's value in one world.
+  private val firstScores = terms.scanLeft(0)(_ + _._2.size)
+
+  /** The objective's value in one world: [[Objective.Never]] of the worse sign if a measure has none.
     *
     * @param outcomes the values of [[judged]]
     */
@@ -32,8 +34,11 @@ final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
     var sum = 0.0
     eachBelow(terms.size): number =>
       val (weight, term) = terms(number)
-      sum += weight * term.value(outcomes.values(number)(world), durationS)
-    sum
+      val first          = firstScores(number)
+      sum += weight * term.value(score => outcomes.values(first + score)(world), durationS)
+    if sum.isNaN && mayLack then direction.sign * Objective.Never else sum
+
+  private val mayLack = measures.exists(_._2.reduced.isEmpty)
 
   /** The objective as text, without the direction, as [[Objective.ofRole]] and the other methods read it. */
   def formula: String = terms.zipWithIndex
@@ -56,6 +61,10 @@ final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
   def title: String = if unit.isEmpty then formula else s"$formula, $unit"
 
 object Objective:
+  /** The value of an episode without one of the measures, in the objective's unit: worse, and further from
+    * the paused loop's, than that of any episode that has them.
+    */
+  val Never = 1e6
 
   /** Reads the objective of one side of a duel: a name, or a sum such as `0.7*last10s + 0.3*effort`,
     * optionally preceded by `minimise` or `maximise`. By default, a sum is minimised, and a single term has
@@ -105,7 +114,7 @@ object Objective:
     * their order.
     */
   def measures(scenario: Scenario): ListMap[String, Measure] =
-    byKey(scenario.measures.filter(_.reduced.nonEmpty))
+    byKey(scenario.measures.filter(_.parts.nonEmpty))
 
   private def byKey(measures: Vector[Measure]) =
     measures.map(measure => ScenarioTerm.keyOf(measure) -> measure).to(ListMap)
@@ -118,7 +127,7 @@ object Objective:
     */
   def ofQuantities(text: String, scenario: Scenario, otherwise: Direction): Either[String, Objective] =
     val known  = measures(scenario)
-    val others = scenario.measures.filter(_.reduced.isEmpty).map(ScenarioTerm.keyOf)
+    val others = scenario.measures.filter(_.parts.isEmpty).map(ScenarioTerm.keyOf)
     read(text, known, otherwise): name =>
       val note = if others.contains(name) then s": $name is a measure of whole flights" else ""
       if known.isEmpty then (s"another scenario, since ${scenario.name} has no measure of a quantity", note)

@@ -11,35 +11,46 @@ trait Term:
 
   def unit: String
 
-  /** The score that forward simulation computes for this term; None if only a complete flight has it. */
-  def judged(durationS: Double, periodS: Double): Option[Judged | Effort]
+  /** Number of scores that forward simulation computes for this term; 0 if only a complete flight has it. */
+  def size: Int = 1
 
-  /** The term's value in an episode.
+  def judged(durationS: Double, periodS: Double): Vector[Judged | Effort]
+
+  /** The term's value in an episode; NaN if it has none.
     *
-    * @param computed the score described by [[judged]]
+    * @param score the term's scores by their index in [[judged]]
     */
-  def value(computed: Float, durationS: Double): Double
+  def value(score: Int => Float, durationS: Double): Double
 
 /** A measure of a scenario; its key is that of the measure, such as `off-ring`. */
 final case class ScenarioTerm(measure: Measure) extends Term:
   def key: String  = ScenarioTerm.keyOf(measure)
   def unit: String = measure.unit
 
-  def judged(durationS: Double, periodS: Double): Option[Judged] = measure.reduced.map: by =>
+  override def size: Int = measure.parts.size
+
+  def judged(durationS: Double, periodS: Double): Vector[Judged] = measure.parts.map: by =>
     val fromS = by.over match
       case Window.Whole          => 0
       case Window.After(seconds) => seconds
       case Window.Last(seconds)  => durationS - math.floor(seconds / periodS + 1e-9) * periodS
     Judged(by.quantity, by.reduction, fromS, periodS)
 
-  def value(computed: Float, durationS: Double): Double =
-    ScenarioTerm.never(measure, durationS).fold(computed.toDouble)(computed.toDouble.min)
+  private val isReduction = measure.reduced.nonEmpty
+  private val mayBeNever  = ScenarioTerm.mayBeNever(measure)
+
+  def value(score: Int => Float, durationS: Double): Double =
+    if mayBeNever then durationS.min(score(0))
+    else if isReduction then score(0)
+    else measure.of(Vector.tabulate(size)(score(_).toDouble)).getOrElse(Double.NaN)
 
 object ScenarioTerm:
   /** The value of a time that is never reached: the episode's duration; None if the measure is no such time.
     */
   def never(measure: Measure, durationS: Double): Option[Double] =
-    Option.when(measure.reduced.exists(_.reduction.mayBeNever))(durationS)
+    Option.when(mayBeNever(measure))(durationS)
+
+  private def mayBeNever(measure: Measure) = measure.reduced.exists(_.reduction.mayBeNever)
 
   def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
 
@@ -59,22 +70,22 @@ enum DistanceTerm(val key: String, val unit: String) extends Term:
   /** First time at which the distance was at most `radiusM`, s; the episode's duration if there is none. */
   case CaptureTime(radiusM: Double) extends DistanceTerm(s"captureTime($radiusM)", "s")
 
-  def judged(durationS: Double, periodS: Double): Option[Judged] = Some(this match
+  def judged(durationS: Double, periodS: Double): Vector[Judged] = Vector(this match
     case Last10s              => Judged(Separation, Reduction.Mean, Rollout.last10sFromS(durationS, periodS))
     case Mean                 => Judged(Separation, Reduction.Mean, 0)
     case Min                  => Judged(Separation, Reduction.Least, 0)
     case Capture(radiusM, _)  => Judged(Separation, OfMoment.FirstWithin(radiusM), 0)
     case CaptureTime(radiusM) => Judged(Separation, OfMoment.FirstWithin(radiusM), 0))
 
-  def value(computed: Float, durationS: Double): Double = this match
+  def value(score: Int => Float, durationS: Double): Double = this match
     // The time of a score is a Float, and a capture exactly at the limit counts.
-    case Capture(_, withinS) => if computed <= withinS.toFloat then 1.0 else 0.0
-    case CaptureTime(_)      => computed.toDouble.min(durationS)
-    case _                   => computed
+    case Capture(_, withinS) => if score(0) <= withinS.toFloat then 1.0 else 0.0
+    case CaptureTime(_)      => durationS.min(score(0))
+    case _                   => score(0)
 
 /** The control effort of a vehicle, by its index in the team. */
 final case class EffortTerm(vehicle: Int) extends Term:
   def key: String                                                = "effort"
   def unit: String                                               = "rad"
-  def judged(durationS: Double, periodS: Double): Option[Effort] = Some(Effort(vehicle))
-  def value(computed: Float, durationS: Double): Double          = computed
+  def judged(durationS: Double, periodS: Double): Vector[Effort] = Vector(Effort(vehicle))
+  def value(score: Int => Float, durationS: Double): Double      = score(0)

@@ -38,7 +38,7 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
     apart.firstBelow("from", 7.9),
     apart.staysAbove("since", 8.3),
     apart.staysBelow("since", 20.1)
-  ).map(ScenarioTerm(_).judged(durationS, 0.1).get)
+  ).map(ScenarioTerm(_).judged(durationS, 0.1).head)
 
   private def apart = Series.of("apart", "m", Apart)
 

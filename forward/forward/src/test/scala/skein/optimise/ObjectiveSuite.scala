@@ -97,4 +97,4 @@ class ObjectiveSuite extends munit.FunSuite:
   test("a capture within the limit counts, and one a period later does not"):
     val capture = DistanceTerm.Capture(4, 7.3)
     for (captureS, expected) <- Seq(7.2 -> 1.0, 7.3 -> 1.0, 73 * 0.1 -> 1.0, 7.4 -> 0.0) do
-      assertEquals(capture.value(captureS.toFloat, 20), expected, s"$captureS s")
+      assertEquals(capture.value(_ => captureS.toFloat, 20), expected, s"$captureS s")

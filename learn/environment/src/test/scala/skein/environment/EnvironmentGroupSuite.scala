@@ -193,7 +193,7 @@ class EnvironmentGroupSuite extends munit.FunSuite, TemporaryFolders:
       scenario = "crossing",
       learners = "all",
       objective = "arrived"
-    ))).contains("is a measure of whole flights"))
+    ))).contains("rewards add up to these, got arrived"))
     assertEquals(
       refused(surround.copy(objective = "off-ring + 0.1*gap")),
       "objective: expected means over time, or one root mean square alone: rewards add up to these, " +

@@ -149,6 +149,9 @@ private[lanes] final class ScoreLanes private (
         Vector(trace.binary(Op.Min, kept(0), trace.where(isPositive, time, never)))
       case Reduction.StaysPositive =>
         Vector(trace.where(isPositive, trace.binary(Op.Min, kept(0), time), never))
+      case Reduction.Entries =>
+        val (here, none) = (trace.where(isPositive, trace.const(1), trace.const(0)), trace.const(0))
+        Vector(here, trace.add(kept(1), trace.where(trace.lt(kept(0), here), trace.const(1), none)))
       case OfMoment.FirstWithin(_) =>
         Vector(trace.binary(Op.Min, kept(0), trace.where(trace.le(value, own), time, never)))
       case OfMoment.Newest => Vector(value)
@@ -239,7 +242,7 @@ private[lanes] object ScoreLanes:
     case Reduction.LeastAt                                       => Vector(Float.PositiveInfinity, Float.NaN)
     case Reduction.MostAt                                        => Vector(Float.NegativeInfinity, Float.NaN)
     case OfMoment.Newest                                         => Vector(Float.NaN)
-    case Reduction.Sd                                            => Vector(0, 0)
+    case Reduction.Sd | Reduction.Entries                        => Vector(0, 0)
     case Reduction.Mean | Reduction.Rms | Reduction.TimePositive => Vector(0)
 
   private type Scored = (Vector[Judged], Int, Option[OwnEnd])
