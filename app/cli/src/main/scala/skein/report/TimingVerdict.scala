@@ -64,15 +64,18 @@ object TimingVerdict:
     (Option.when(first.nonEmpty)(first.mkString(", ")) ++ words.lastOption).mkString(" and ")
 
   /** @param same the flights of one loop over one link in one scenario
-    * @return None if a flight has no result, the machine was too busy, or there are too few data
+    * @return None if no flight has a result on a machine that was fast enough, or there are too few data
     */
   private def of(set: FlightSet, same: Vector[FlightSummary]): Option[Verdict] =
-    val one = same.head
-    if one.noResult.isDefined || one.starved.isDefined then None
-    else
-      Distribution.of(same.flatMap(set.deviation))
-        .map(measured => Verdict(true, measured.mean.abs, s"${percent(measured.mean.abs)} off the truth"))
-        .orElse(estimated(one))
+    val sound = same.filter(one => one.noResult.isEmpty && one.starved.isEmpty)
+    off(sound.flatMap(set.deviation))
+      .map(share => Verdict(true, share, s"${percent(share)} off the truth"))
+      .orElse(sound.headOption.flatMap(estimated))
+
+  /** How far flights are off, whichever way: deviations of different signs do not make good for one another.
+    */
+  private[report] def off(shares: Vector[Double]): Option[Double] =
+    Distribution.of(shares.map(_.abs)).map(_.mean)
 
   private def estimated(flight: FlightSummary): Option[Verdict] =
     for

@@ -112,6 +112,10 @@ class NoResultSuite extends munit.FunSuite:
     )
     assertEquals(TimingVerdict.sentence(Report.of(Seq(paused))), None)
 
+  test("deviations of different signs do not make good for one another"):
+    assertEquals(TimingVerdict.off(Vector(0.125, -0.125)), Some(0.125))
+    assertEquals(TimingVerdict.off(Vector.empty), None)
+
   test(
     "without a paused flight, timing is assessed by the distance from a reading to its command's arrival"
   ):
