@@ -1,8 +1,9 @@
 package skein.lanes
 
 import skein.forward.*
+import skein.lanes.score.Judged
 import skein.optimise.{Direction, Objective}
-import skein.scenario.{Crossing, Scenario}
+import skein.scenario.{Crossing, Positions, Quantity, Reduction, Scenario, Separation, Surround}
 import skein.simd.WorldRandom
 import skein.testing.Optimised
 
@@ -42,8 +43,32 @@ class JoinedMeasuresSuite extends munit.FunSuite, Optimised:
         value
       assert(values.exists(value => value > 0 && value < Objective.Never), s"$key: $values")
 
+  test("reductions with two accumulators are right in functions so long that they are split"):
+    val judged =
+      for
+        thanM     <- Vector.tabulate(12)(1 + 0.1 * _)
+        reduction <- Seq(Reduction.LeastAt, Reduction.MostAt, Reduction.Sd, Reduction.Entries)
+      yield Judged(Nearer(thanM), reduction, 0)
+    val team     = TeamCandidate(Engagement.of(Surround(6).fleet, 8), judged)
+    val all      = worlds(4, team)
+    val outcomes = TeamBatch(LoopTiming.Stream(), lag, 1).fly(all)
+    for world <- 0 until all.size do
+      val truth = ScalarTeam(LoopTiming.Stream(), lag).fly(team, DelayTable.vpn, all.key(world))
+      for (value, number) <- truth.zipWithIndex do
+        assertEqualsDouble(
+          outcomes.values(number)(world),
+          value,
+          2e-3,
+          s"world $world, ${team.quantities(number)}"
+        )
+      assert(truth.last > 0, truth.toString)
+
   test("a flight without an arrival counts as worse than any other"):
     for (text, never) <- Seq("to-goal" -> 1e6, "maximise to-goal" -> -1e6) do
       val by   = objective(text, narrow)
       val team = TeamCandidate(Engagement.of(narrow.fleet, 1), by.judged(1, 0.1))
       assertEquals(by.value(TeamBatch(LoopTiming.Stream(), lag, 1).fly(worlds(1, team)), 0, 1), never)
+
+/** By how much two vehicles are nearer to one another than a distance, m. */
+private final case class Nearer(thanM: Double) extends Quantity:
+  def of(positions: Positions): Double = thanM - Separation.of(positions)

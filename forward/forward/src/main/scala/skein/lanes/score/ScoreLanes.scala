@@ -86,10 +86,13 @@ private[lanes] final class ScoreLanes private (
 
   private def formulaOf(number: Int): Node = angles(number).convert(all(number).outputs(0)._2)
 
-  /** By score, the indices of its accumulators and their next values. */
+  /** By score, the indices of its accumulators and their next values, the last one first: a long function is
+    * split, and its first part has written its outputs when the second reads.
+    */
   private val successors: Vector[Vector[(Int, Node)]] = judged.indices.toVector.map: number =>
     val own = successorsOf(number, formulaOf(number), each => kept(places(number) + each)).zipWithIndex.map:
       (next, each) => (places(number) + each, next)
+    .reverse
     if !hasEnd then own
     else
       val isOver  = trace.lt(kept(endedAt), trace.param(Time))
@@ -120,8 +123,8 @@ private[lanes] final class ScoreLanes private (
   private def asks(what: PartialFunction[Source, Boolean]): Boolean =
     ending.exists(_.function.inputs.exists(input => what.isDefinedAt(source(input))))
 
-  /** The next values of the accumulators. Each may overwrite its predecessor, which no other expression
-    * reads.
+  /** The next values of the accumulators. Each overwrites its predecessor, which only those behind it read,
+    * and these do not depend on it.
     *
     * @param value the quantity's present value
     */
@@ -150,8 +153,11 @@ private[lanes] final class ScoreLanes private (
       case Reduction.StaysPositive =>
         Vector(trace.where(isPositive, trace.binary(Op.Min, kept(0), time), never))
       case Reduction.Entries =>
-        val (here, none) = (trace.where(isPositive, trace.const(1), trace.const(0)), trace.const(0))
-        Vector(here, trace.add(kept(1), trace.where(trace.lt(kept(0), here), trace.const(1), none)))
+        val (no, yes) = (trace.const(0), trace.const(1))
+        Vector(
+          trace.where(isPositive, yes, no),
+          trace.add(kept(1), trace.where(isPositive, trace.sub(yes, kept(0)), no))
+        )
       case OfMoment.FirstWithin(_) =>
         Vector(trace.binary(Op.Min, kept(0), trace.where(trace.le(value, own), time, never)))
       case OfMoment.Newest => Vector(value)
