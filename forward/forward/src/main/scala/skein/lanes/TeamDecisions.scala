@@ -107,7 +107,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
           stands(timeS)
         case Source.KnownCos(vehicle) => asksKnownCos(vehicle) = place
         case Source.KnownSin(vehicle) => asksKnownSin(vehicle) = place
-        case Source.Parameter(number) => stands(parameters, number * WORLDS)
+        case Source.Parameter(_)      => stands(parameters)
         case Source.Shared(number)    => stands(team.values, number * WORLDS)
     for vehicle <- known.indices if asksKnownCos(vehicle) >= 0 || asksKnownSin(vehicle) >= 0 do
       if known(vehicle) == null then known(vehicle) = Directions(WORLDS)

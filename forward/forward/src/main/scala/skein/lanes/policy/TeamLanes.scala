@@ -87,7 +87,7 @@ private[lanes] final class TeamLanes private (
     val course = formulas(self).motion match
       case Motion.Along(headingRad, speedMps) =>
         val (cos, sin) = by.cosSin(by.factored(headingRad))
-        val speed      = by.convert(speedMps)
+        val speed      = by.convert(by.factored(speedMps))
         Vector(trace.mul(speed, cos), trace.mul(speed, sin), cos, sin)
       case Motion.With(northMps, eastMps) =>
         val (north, east) = (by.convert(by.factored(northMps)), by.convert(by.factored(eastMps)))
@@ -130,8 +130,12 @@ private[lanes] final class TeamLanes private (
   /** The function for what is computed once per view; may be empty. */
   val shared: BoundFunction = BoundFunction.of(common.nodes)
 
+  /** A vehicle's parameters are rows of one array. */
+  private val rowOf: PartialFunction[Int, Int] = Function.unlift: input =>
+    if input < view then None else Some(source(input)).collect { case Source.Parameter(row) => row }
+
   private def own(outputs: Vector[Node]): BoundFunction =
-    BoundFunction.of(common.without(trace, outputs, number => own(-1, Source.Shared(number))))
+    BoundFunction.of(common.without(trace, outputs, number => own(-1, Source.Shared(number))), rowOf)
 
   /** By vehicle: the function for its own part of the decision, without the memory that is not
     * [[remembered]].
