@@ -86,9 +86,10 @@ final case class SingleTrack(
     val brake     = controls.brake.max(0.0).min(1.0) * brakeMps2
     val slowed    = dtS * (brake + coastMps2(state.frontMps))
     val front     = driven - driven.max(-slowed).min(slowed)
-    val turn      = dtS * (state.yawRadPerS + yaw) / 2
+    val halfS     = dtS / 2
+    val turn      = halfS * (state.yawRadPerS + yaw)
     val along     = state.headingRad + turn / 2
-    val (alongM, acrossM) = (dtS * (state.frontMps + front) / 2, dtS * (state.rightMps + right) / 2)
+    val (alongM, acrossM) = (halfS * (state.frontMps + front), halfS * (state.rightMps + right))
     CarState(
       state.northM + alongM * StrictMath.cos(along) - acrossM * StrictMath.sin(along),
       state.eastM + alongM * StrictMath.sin(along) + acrossM * StrictMath.cos(along),
