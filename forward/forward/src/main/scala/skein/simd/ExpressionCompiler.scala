@@ -102,8 +102,8 @@ private[skein] abstract class ExpressionCompiler:
       case Op.Or    => or(a, b)
       case Op.Sin   => sinCos(node.args(0))._1
       case Op.Cos   => sinCos(node.args(0))._2
-      case Op.Atan2 => atan2(a, b)
-      case Op.Atan  => atan2(a, constant(1f))
+      case Op.Atan2 => atan2(a, b, isPositive(node.args(1)))
+      case Op.Atan  => atan2(a, constant(1f), isAhead = true)
       case Op.Hypot =>
         val (x, y) = (a, b)
         sqrt(fma(x, x, mul(y, y)))
@@ -157,16 +157,16 @@ private[skein] abstract class ExpressionCompiler:
       )
       val cos =
         series(square, 2.443315711809948e-5f, -1.388731625493765e-3f, 4.166664568298827e-2f, -0.5f, 1f)
-      val quadrant = bitsOf(rounded)
-      val odd      = isHighest(shiftLeft(quadrant, 31))
-      val sinSign  = shiftLeft(andBits(quadrant, bitConstant(2)), 30)
-      val cosSign  = shiftLeft(andBits(addBits(quadrant, bitConstant(1)), bitConstant(2)), 30)
-      (signed(choose(sin, cos, odd), sinSign), signed(choose(cos, sin, odd), cosSign))
+      val quadrant        = bitsOf(rounded)
+      val (half, quarter) = (shiftLeft(quadrant, 30), shiftLeft(quadrant, 31))
+      val odd             = isHighest(quarter)
+      (signed(choose(sin, cos, odd), half), signed(choose(cos, sin, odd), xorBits(half, quarter)))
     }
   )
 
-  private def atan2(y: Int, x: Int): Int =
-    val (ax, ay) = (abs(x), abs(y))
+  /** @param isAhead whether x is known not to be negative */
+  private def atan2(y: Int, x: Int, isAhead: Boolean): Int =
+    val (ax, ay) = (if isAhead then x else abs(x), abs(y))
     val steep    = isLess(ax, ay)
     val large    = add(choose(ax, ay, steep), constant(1e-30f))
     val small    = choose(ay, ax, steep)
@@ -181,7 +181,8 @@ private[skein] abstract class ExpressionCompiler:
     val first  = fma(rise, ratio, ratio)
     val second = choose(first, add(first, constant(0.785398163f)), beyond)
     val third  = choose(second, sub(constant(1.57079633f), second), steep)
-    val angle  = choose(third, sub(constant(3.14159265f), third), isLess(x, constant(0f)))
+    val angle  =
+      if isAhead then third else choose(third, sub(constant(3.14159265f), third), isLess(x, constant(0f)))
     ofBits(orBits(bitsOf(angle), andBits(bitsOf(y), bitConstant(Int.MinValue))))
 
   /** The exponential, for arguments from −87 to 88; larger results exceed floats. */
@@ -251,7 +252,9 @@ private[skein] abstract class ExpressionCompiler:
   private def series(x: Int, coefficients: Float*): Int =
     coefficients.tail.foldLeft(constant(coefficients.head))((sum, each) => fma(sum, x, constant(each)))
 
-  private def signed(x: Int, sign: Int): Int = ofBits(xorBits(bitsOf(x), sign))
+  /** The number with its sign changed where the highest bit is set. */
+  private def signed(x: Int, bits: Int): Int =
+    ofBits(xorBits(bitsOf(x), andBits(bits, bitConstant(Int.MinValue))))
 
   /** The minimum or maximum, by a comparison. It takes two instructions, a machine's own `min` or `max` up to
     * six. NaN stays NaN if only one of the two arguments can be NaN; that one is then the value.
