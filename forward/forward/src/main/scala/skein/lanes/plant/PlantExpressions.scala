@@ -1,6 +1,6 @@
 package skein.lanes.plant
 
-import skein.formula.{Angles, Evaluation, Formula, Node, Trace}
+import skein.formula.{Angles, Evaluation, Formula, Fused, Node, Trace}
 import skein.vehicle.PlantTiming
 
 /** A plant's step, and the reading at its end, as expressions. Their parameters are the speed of a command of
@@ -29,18 +29,21 @@ private[lanes] final class PlantExpressions(
   private val speed   = trace.param(first)
   private val stepOwn = angles(stepping, first + 1, leafOfStep)
 
-  val stepped: Vector[Node] = taken(stepping.outputs.map((_, node) => stepOwn.convert(node)))
+  val stepped: Vector[Node] = taken(converted(stepping, stepOwn))
 
   private val readOwn = angles(reading, first + 1 + stepOwn.derived.size, stepped)
 
   /** Position and velocity at the end of the step: north and east, and in space also down. */
-  val seen: Vector[Node] = reading.outputs.map((_, node) => readOwn.convert(node))
+  val seen: Vector[Node] = converted(reading, readOwn)
 
   /** [[seen]] with the vehicle's start added to the position. */
   def seenFrom(startX: Node, startY: Node): Vector[Node] =
     Vector(trace.add(seen(0), startX), trace.add(seen(1), startY)) ++ seen.drop(2)
 
   val parameters: Int = 1 + stepOwn.derived.size + readOwn.derived.size
+
+  private def converted(formula: Formula, angles: Angles) =
+    Fused(formula.trace, formula.outputs.map(_._2)).nodes.map(angles.convert)
 
   private def angles(formula: Formula, from: Int, leaf: Int => Node) =
     Angles(formula.trace, trace, leaf, _ => None, number => trace.param(from + number))
