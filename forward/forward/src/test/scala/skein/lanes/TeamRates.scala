@@ -30,6 +30,9 @@ import skein.vehicle.{ReducedModel, TiltModel}
 object TeamRates:
   private val Some = 64
 
+  /** Rounds before measuring, until the compilers are done. */
+  private val WarmUp = 20
+
   /** Measures processor time with SIMD and by the scalar engine in turns, with a witness of both, then
     * simulates 200 candidates × 200 episodes on all cores.
     */
@@ -58,7 +61,7 @@ object TeamRates:
       def rate(numbers: () => Vector[Double]): Double =
         val before = system.getProcessCpuTime
         numbers().size * agentSteps * 1e3 / (system.getProcessCpuTime - before)
-      for _ <- 1 to 3 do
+      for _ <- 1 to WarmUp do
         fast(): Unit
         slow(): Unit
       val turns          = Vector.fill(9)((rate(() => fast()), rate(() => slow()))).sortBy(_ / _)
