@@ -32,7 +32,7 @@ class ClimbingSimulation extends munit.FunSuite, Optimised, Unhurried:
         updatesPerStep = 0.25,
         randomSteps = 1600
       ),
-      seed = 1,
+      seed = 2,
       BatchThreads(1)
     )
     SideTask.times.foreach(learner.actor.ignore)
