@@ -30,7 +30,10 @@ final class Tracks private (
   /** The tracks of only the first vehicles, over the time in which all of these were read. */
   def first(count: Int): Tracks = if count == vehicles.size then this else Tracks.of(tracks.take(count)).get
 
-  def positions(instant: Int): Positions =
+  def positions(instant: Int): Positions = places(instant)
+
+  // Measures ask for them again and again: those of a crossing for each pair of its vehicles.
+  private lazy val places = instants.map: instant =>
     def now(values: Vector[Array[Double]]) = IArray.from(values.map(_(instant)))
     Positions(now(northM), now(eastM), now(downM), timeS(instant))
 
