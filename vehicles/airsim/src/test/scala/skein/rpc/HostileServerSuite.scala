@@ -116,9 +116,9 @@ class HostileServerSuite extends munit.FunSuite:
     assert(errors.forall(e => e.isInstanceOf[RpcError.Timeout] || e.isInstanceOf[RpcError.Overloaded]))
     assertEquals(r.client.stats.pending, 0L)
 
-  private final case class Inner(x: Double) derives upickle.default.ReadWriter
+  private final case class Inner(x: Double) derives skein.airsim.wire.Fields
   private final case class Outer(name: String, inner: Inner, more: Seq[Inner])
-      derives upickle.default.ReadWriter
+      derives skein.airsim.wire.Fields
 
   private def asked(r: Rig, answer: Msg): String =
     val outcome = r.client.callAs[Outer]("read", Seq.empty)
